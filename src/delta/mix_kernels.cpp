@@ -59,16 +59,37 @@ struct LevelLooks {
     }
 };
 
-// Notes opacities of what eight voxels of a row become.
-HWY_INLINE void note(FloatVec opacities, float* HWY_RESTRICT most) {
-    hn::StoreU(hn::Max(hn::LoadU(Floats(), most), opacities), Floats(), most);
-}
+// The most opaque of what each voxel of a block becomes.
+struct MostOpacities {
+    HWY_ALIGN float of[512] = {};
 
-VoxelMasks mixEvenLevelsKernel(const MixWindow& window, const Subdivision& parts,
-                               const EvenLevels& levels, const Slot* slotMap,
-                               const float* opacities, BlockSlots* mixed) {
+    // Notes what the voxels of a row from `place` on become.
+    HWY_INLINE void note(const LevelLooks& looks, IntVec levels, std::size_t place) {
+        const FloatVec known = hn::LoadU(Floats(), of + place);
+        hn::StoreU(hn::Max(known, looks.opacitiesOf(levels)), Floats(), of + place);
+    }
+    HWY_INLINE FloatVec at(const LevelLooks&, std::size_t place) const {
+        return hn::LoadU(Floats(), of + place);
+    }
+};
+
+// The same where opacities rise with levels: of the highest.
+struct HighestLevels {
+    HWY_ALIGN std::int32_t of[512] = {};
+
+    HWY_INLINE void note(const LevelLooks&, IntVec levels, std::size_t place) {
+        hn::StoreU(hn::Max(hn::LoadU(Ints(), of + place), levels), Ints(), of + place);
+    }
+    HWY_INLINE FloatVec at(const LevelLooks& looks, std::size_t place) const {
+        return looks.opacitiesOf(hn::LoadU(Ints(), of + place));
+    }
+};
+
+template <typename Most>
+HWY_INLINE VoxelMasks mixLevels(const MixWindow& window, const Subdivision& parts,
+                                const EvenLevels& levels, const LevelLooks& looks,
+                                BlockSlots* mixed) {
     const std::size_t lanes = hn::Lanes(Floats());
-    const LevelLooks looks{hn::Set(Floats(), float(levels.perCode)), slotMap, opacities};
 
     // Steps above the lowest code, NaN where there are none: floats hold the quarters of quarters
     // of 16 bits exactly.
@@ -83,7 +104,7 @@ VoxelMasks mixEvenLevelsKernel(const MixWindow& window, const Subdivision& parts
     }
     std::fill(std::end(steps) - kBeyond, std::end(steps), 0.0f);
 
-    HWY_ALIGN float most[512] = {};  // opacity of what a voxel becomes
+    Most most;
     HWY_ALIGN float plane[kPlane + kBeyond] = {};
     HWY_ALIGN float row[kSide + kBeyond];
     HWY_ALIGN Slot thin[16];
@@ -106,12 +127,12 @@ VoxelMasks mixEvenLevelsKernel(const MixWindow& window, const Subdivision& parts
             const std::size_t part = (u / 8 * slices + s / 8) * within;
             const std::size_t place = 64 * (s % 8) + 8 * (u % 8);
             const float* const own = plane + (1 + u / within) * kSide;
-            float* const mostOfRow = most + 64 * (s / slices) + 8 * (u / within);
+            const std::size_t voxels = 64 * (s / slices) + 8 * (u / within);
             if (within == 1) {
                 for (std::size_t v = 0; v < 8; v += lanes) {
                     const IntVec level = looks.levelsOf(hn::LoadU(Floats(), own + 1 + v));
                     hn::StoreU(looks.slotsOf(level), Ints(), &mixed[part][place + v]);
-                    note(looks.opacitiesOf(level), mostOfRow + v);
+                    most.note(looks, level, voxels + v);
                 }
                 continue;
             }
@@ -129,7 +150,8 @@ VoxelMasks mixEvenLevelsKernel(const MixWindow& window, const Subdivision& parts
                 const IntVec odd = looks.levelsOf(mixedVector(middle, behind, half));
                 hn::StoreInterleaved2(looks.slotsOf(even), looks.slotsOf(odd), Ints(),
                                       thin + 2 * v);
-                note(hn::Max(looks.opacitiesOf(even), looks.opacitiesOf(odd)), mostOfRow + v);
+                most.note(looks, even, voxels + v);
+                most.note(looks, odd, voxels + v);
             }
             std::copy_n(thin, 8, &mixed[part][place]);
             std::copy_n(thin + 8, 8, &mixed[part + 1][place]);
@@ -140,12 +162,20 @@ VoxelMasks mixEvenLevelsKernel(const MixWindow& window, const Subdivision& parts
     for (std::size_t n = 0; n < 512; n += lanes) {
         const std::size_t place = (1 + n / 64) * kPlane + (1 + n / 8 % 8) * kSide + 1 + n % 8;
         const FloatVec own = looks.opacitiesOf(looks.levelsOf(hn::LoadU(Floats(), steps + place)));
-        const auto isLost = hn::Lt(hn::LoadU(Floats(), most + n), hn::Mul(half, own));
+        const auto isLost = hn::Lt(most.at(looks, n), hn::Mul(half, own));
         std::uint8_t bits[8] = {};
         hn::StoreMaskBits(Floats(), isLost, bits);
         lost[n / 64] |= std::uint64_t(bits[0]) << n % 64;
     }
     return lost;
+}
+
+VoxelMasks mixEvenLevelsKernel(const MixWindow& window, const Subdivision& parts,
+                               const EvenLevels& levels, const Slot* slotMap,
+                               const float* opacities, bool rise, BlockSlots* mixed) {
+    const LevelLooks looks{hn::Set(Floats(), float(levels.perCode)), slotMap, opacities};
+    return rise ? mixLevels<HighestLevels>(window, parts, levels, looks, mixed)
+                : mixLevels<MostOpacities>(window, parts, levels, looks, mixed);
 }
 
 }  // namespace deltasplat::HWY_NAMESPACE
@@ -158,9 +188,9 @@ HWY_EXPORT(mixEvenLevelsKernel);
 
 VoxelMasks mixEvenLevels(const MixWindow& window, const Subdivision& parts,
                          const EvenLevels& levels, const Slot* slotMap, const float* opacities,
-                         BlockSlots* mixed) {
+                         bool rise, BlockSlots* mixed) {
     return HWY_DYNAMIC_DISPATCH(mixEvenLevelsKernel)(window, parts, levels, slotMap, opacities,
-                                                     mixed);
+                                                     rise, mixed);
 }
 
 }  // namespace deltasplat

@@ -14,6 +14,7 @@ namespace deltasplat {
 struct EvenLevels {
     Code lowest = 0;  ///< the code of the first one
     int perCode = 0;  ///< a power of two; 0 if codes are not even
+    int last = 0;     ///< the level of the last code
 };
 
 /// Of the 512 voxels of a block, bit 8 u + v of [slice].
@@ -23,9 +24,10 @@ using VoxelMasks = std::array<std::uint64_t, 8>;
 /// returns the voxels that are more than twice as opaque as anything that they become.
 /// @param slotMap    [kSlotCount]: what becomes of the slots of levels
 /// @param opacities  [kSlotCount]: of that
+/// @param rise       whether no level has less opacity than one below it
 /// @param mixed      [parts.within along u][parts.slices][parts.within along v]
 VoxelMasks mixEvenLevels(const MixWindow& window, const Subdivision& parts,
                          const EvenLevels& levels, const Slot* slotMap, const float* opacities,
-                         BlockSlots* mixed);
+                         bool rise, BlockSlots* mixed);
 
 }  // namespace deltasplat

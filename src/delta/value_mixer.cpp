@@ -52,9 +52,9 @@ void ValueMixer::makeEvenLevels(const Volume& volume, int lowest, int highest) {
     const int wanted = parts_.smallestShare();
     // A power of two, so that a code's own value comes out exactly.
     const int room = span == 0 ? 1 : (kCodeCount - 1) / span;
-    even_ = {Code(lowest), int(std::bit_floor(unsigned(std::min(wanted, room))))};
-    const auto last = std::ptrdiff_t{span} * even_.perCode;
-    std::fill_n(levels_.histogram.begin(), last + 1, 1);
+    const int perCode = int(std::bit_floor(unsigned(std::min(wanted, room))));
+    even_ = {Code(lowest), perCode, span * perCode};
+    std::fill_n(levels_.histogram.begin(), even_.last + 1, 1);
     CodeBook& book = levels_.codeBook;
     const double step = book.kind == CodeBook::Kind::kLinear ? book.step : 1;
     book.kind = CodeBook::Kind::kLinear;
@@ -162,6 +162,8 @@ MixMap::MixMap(std::span<const Slot> slotMap, std::span<const float> opacitiesOf
     ofMapped[kEmptySlot] = 0;
     for (std::size_t slot = 0; slot < slots.size(); ++slot)
         opacities[slot] = ofMapped[std::size_t(slots[slot])];
+    rising =
+        std::size_t(std::is_sorted_until(opacities.begin(), opacities.end()) - opacities.begin());
 }
 
 namespace {
@@ -194,8 +196,9 @@ void ValueMixer::mix(const MixWindow& window, const MixMap& map,
         return;
     }
     if (even_.perCode != 0) {
+        const bool rise = map.rising > std::size_t(even_.last) + 1;
         const VoxelMasks lost = mixEvenLevels(window, parts_, even_, map.slots.data(),
-                                              map.opacities.data(), mixed.data());
+                                              map.opacities.data(), rise, mixed.data());
         return keepSeen(window, map, lost, mixed);
     }
     mixRows(valuesOf(window, table_.ofCode), parts_, [&](int part, int place, const double* row) {

@@ -25,6 +25,7 @@ struct MixMap {
     std::span<const Slot> slots;
     std::vector<float> opacities;  ///< [kSlotCount]: of the slots of levels, 0 of what is not seen
     std::vector<float> ofMapped;   ///< [what becomes of them]
+    std::size_t rising = 0;        ///< so many of the first opacities never fall
 };
 
 /// Divides voxels into thin ones. Their values are mixed from the voxels they lie between,

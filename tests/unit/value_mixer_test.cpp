@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
@@ -336,17 +337,23 @@ struct PlainMix {
 };
 
 // Clear and opaque classes of a few levels each, and voxels that are not active here and there.
-void expectPlainMix(const std::vector<Code>& codes, const Subdivision& parts) {
+// @param rise  whether higher levels are no less opaque; the lowest are clear
+void expectPlainMix(const std::vector<Code>& codes, const Subdivision& parts, bool rise) {
     const Volume volume = volumeOf(CodeBook::integer(), codes);
     const ValueMixer mixer(volume, parts);
     std::mt19937 random(11);
     std::vector<Slot> slots(kSlotCount, kEmptySlot);
-    for (std::size_t level = 0; level < kCodeCount; ++level)
-        slots[level + 1] = level % 30 < 10 ? kEmptySlot : Slot(1 + level / 7 % 199);
+    for (std::size_t level = 0; level < kCodeCount; ++level) {
+        const bool isClear = rise ? level < 100 : level % 30 < 10;
+        const std::size_t look = rise ? std::min<std::size_t>(level / 50, 198) : level / 7 % 199;
+        slots[level + 1] = isClear ? kEmptySlot : Slot(1 + look);
+    }
     std::vector<float> opacities{0};
     for (int i = 1; i < 200; ++i)
         opacities.push_back(i % 3 == 0 ? 1.0f : float(random() % 1000 + 1) / 8000);
+    if (rise) std::sort(opacities.begin(), opacities.end());
     const MixMap map(slots, opacities);
+    EXPECT_EQ(map.rising == kSlotCount, rise);
     for (const unsigned empty : {0u, 2u, 7u}) {
         SCOPED_TRACE(empty);
         MixWindow window;
@@ -369,8 +376,10 @@ TEST(ValueMixer, EvenLevelsAreAsAPlainMixOnEverySimdLevel) {
     std::iota(many.begin(), many.end(), Code{5});
     for (const Subdivision& parts : {Subdivision{2, 2}, Subdivision{2, 1}, Subdivision{4, 1},
                                      Subdivision{1, 2}, Subdivision{4, 2}}) {
-        expectPlainMix(few, parts);
-        expectPlainMix(many, parts);
+        for (const bool rise : {false, true}) {
+            expectPlainMix(few, parts, rise);
+            expectPlainMix(many, parts, rise);
+        }
     }
 }
 
