@@ -168,7 +168,6 @@ void FoldedPicture::show(const PixelBox& part, Image& image) {
     RenderStats& stats = impl_->stats;
     for (const Impl::View& view : impl_->views) {
         const double gain = view.plane.showPart(view.layer, PicturePart(image, part.min, size));
-        if (stats.tolerance.isExact()) continue;
         stats.errorBoundColor = std::max(stats.errorBoundColor, view.bound.color * gain);
         stats.errorBoundAlpha = std::max(stats.errorBoundAlpha, view.bound.alpha * gain);
     }

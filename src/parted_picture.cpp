@@ -50,7 +50,6 @@ void PartedPicture::show(const PixelBox& part, Image& image) {
     for (const KeptView& view : impl_->views) {
         const double gain = view.picture->showPart(
             view.layer, PicturePart(image, part.min, impl_->camera.sizePixels));
-        if (stats.tolerance.isExact()) continue;
         const ErrorBound bound = view.picture->errorBound();
         stats.errorBoundColor = std::max(stats.errorBoundColor, bound.color * gain);
         stats.errorBoundAlpha = std::max(stats.errorBoundAlpha, bound.alpha * gain);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -212,6 +213,11 @@ double PictureView::show(Layer& layer, Image& image) const {
 }
 
 ErrorBound PictureView::errorBound() const {
+    if (axis_->parts.joined > 1) {
+        const double unknown = std::numeric_limits<double>::infinity();
+        return {unknown, unknown};
+    }
+    if (scene_.options.tolerance.isExact()) return {};
     if (scene_.painter && !scene_.painter->mayHold()) return {};
     std::optional<double> brightest;
     if (scene_.painter) {

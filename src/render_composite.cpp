@@ -294,7 +294,6 @@ class CompositeRender {
     }
 
     void countBound(const PictureView& picture, double gain) {
-        if (options_.tolerance.isExact()) return;
         const ErrorBound bound = picture.errorBound();
         stats_.errorBoundColor = std::max(stats_.errorBoundColor, bound.color * gain);
         stats_.errorBoundAlpha = std::max(stats_.errorBoundAlpha, bound.alpha * gain);

@@ -22,7 +22,7 @@ PictureLayout layoutOf(const LayeredPicture::Impl& picture) {
         of.channels = input.layout.channels;
         of.reach = reachOfAll(input, picture.seen[i]);
         if (of.reach.empty()) of.reach = {};
-        if (!picture.scene.options().tolerance.isExact()) of.bound = view.errorBound();
+        of.bound = view.errorBound();
         for (int slab = 0; slab < int(picture.seen[i].size()); ++slab)
             of.slabs.push_back(picture.reachOf({i, slab}));
     }

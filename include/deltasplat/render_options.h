@@ -117,8 +117,8 @@ struct RenderStats {
     double warpSeconds = 0;
     double renderSeconds = 0;  ///< splat, composite, merge and warp
     Tolerance tolerance;
-    /// Most that a pixel may differ from the exact picture's, but for the rounding of floats
-    /// (docs/method.md): 0 without a tolerance, infinity where it is not known.
+    /// Most that a pixel may differ from the exact picture's, but for floats' rounding: 0 without
+    /// a tolerance, infinity where it is not known, as of joined slices (docs/method.md).
     double errorBoundColor = 0;
     double errorBoundAlpha = 0;
     /// Share of what the frame before shows, or this one, that is not the same (FrameChain), 0..1,

@@ -94,6 +94,27 @@ TEST_F(Joined, chosenWhereVoxelsCoverHalfAPixel) {
     EXPECT_EQ(joinedOf(Colors::kLit, 0.1), 1);
 }
 
+// The exact picture is another one.
+TEST_F(Joined, sayNoBound) {
+    const Volume volume = test::randomVolume(kBox, 5, 0.5);
+    RenderOptions options = optionsFor(Colors::kSeveral, 0.4, kOblique);
+    const RenderStats joined = render(volume, options).stats;
+    EXPECT_EQ(joined.joined, 2);
+    EXPECT_TRUE(std::isinf(joined.errorBoundColor));
+    EXPECT_TRUE(std::isinf(joined.errorBoundAlpha));
+    options.between = 0;
+    const RenderStats exact = render(volume, options).stats;
+    EXPECT_EQ(exact.joined, 1);
+    EXPECT_EQ(exact.errorBoundColor, 0);
+    EXPECT_EQ(exact.errorBoundAlpha, 0);
+    options.between = {};
+    options.tolerance.relative = 0.05;
+    const RenderStats held = render(volume, options).stats;
+    EXPECT_EQ(held.joined, 1);
+    EXPECT_FALSE(std::isinf(held.errorBoundColor));
+    EXPECT_GT(held.errorBoundAlpha, 0);
+}
+
 // More than two where they are moved by no more than a quarter of a pixel, for who asks for it.
 TEST_F(Joined, joinsUpToEightWhereThatMovesLittle) {
     const Volume volume = test::randomVolume(kBox, 5, 0.5);
