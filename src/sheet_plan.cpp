@@ -19,10 +19,9 @@ namespace {
 // What a turning camera rounds must not decide.
 constexpr double kSnap = 1e-9;
 
-// Where voxels cover fewer pixels of the screen, one sheet pixel for each and the footprint that
-// goes with it blur less than two with theirs: sigma grows with the screen at one (defaultSigma),
-// and is widest at two from three pixels on.
-constexpr double kMostPixelsOfOne = 5;
+// Where voxels cover fewer pixels of the screen, one sheet pixel for each and its footprint, which
+// grows slowly (defaultSigma), take a fraction of the time of two and theirs, and blur as little.
+constexpr double kLeastPixelsOfTwoSheetPixels = 5;
 
 // What whole blocks are divided into is counted with 32 bits, and some more voxels around it.
 bool canBeDivided(const IndexBox& box, int between) {
@@ -84,7 +83,8 @@ bool wantsDivided(const PreparedScene::Impl& scene, const Factorization& view) {
 }
 
 // Whether voxels are few enough to be divided unasked.
-bool areFew(const PreparedScene::Impl& scene, const Factorization& view, const Listener& listener) {
+bool areFewEnough(const PreparedScene::Impl& scene, const Factorization& view,
+                  const Listener& listener) {
     const IndexBox& box = scene.scene.volume->box;
     if (!canBeDivided(box, 1)) {
         listener.warn("the volume is too wide for voxels to be divided: drawn as they are");
@@ -208,8 +208,9 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Camera& camera,
         }
         if (between > 0 && !canBeDivided(box, between)) throwTooWide(box, between);
     } else if (wantsDivided(scene, view)) {
-        between = areFew(scene, view, listener) ? 1 : 0;
-        hasOnePixelEach = !asksForSigma_ && view.pixelsPerVoxel * (1 + kSnap) < kMostPixelsOfOne;
+        between = areFewEnough(scene, view, listener) ? 1 : 0;
+        hasOnePixelEach =
+            !asksForSigma_ && view.pixelsPerVoxel * (1 + kSnap) < kLeastPixelsOfTwoSheetPixels;
     }
     if (!options.resolution && between > 0)
         resolution_ = 2;

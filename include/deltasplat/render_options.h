@@ -43,15 +43,15 @@ struct SplatOptions {
     Method method = Method::kAuto;
     /// Footprint's deviation in voxels, kMinSigma..kMaxSigma; empty: hasOwnPixel, defaultSigma.
     std::optional<double> sigma;
-    std::optional<double> resolution;  ///< as in factorize(); empty: chosen from the screen
-    /// Slices put between two neighbouring ones, 0..kMostBetween, with values mixed. If any, then
-    /// voxels have two sheet pixels if nothing else is asked for; and if their number is even, two
-    /// values along u and v as well. Empty: 1 where the screen asks for two sheet pixels a voxel
-    /// (and neither resolution nor footprintWidth says another thing), but 0 where what is shown is
-    /// thin (no opacity of the transfer function above 0.25 a voxel, extinction scale included),
-    /// where colours jump or values are labels (TransferFunction::colorsJump), or, with a warning,
-    /// where more than kMostDivided blocks of 8x8x8 voxels can be seen. Where the screen is so
-    /// coarse that it cannot be seen, empty lets slices be drawn as one (mostJoined,
+    std::optional<double> resolution;  ///< as in factorize(); empty: by the screen, and between
+    /// Slices put between two neighbouring ones, 0..kMostBetween, values mixed. If any, voxels have
+    /// two sheet pixels unless resolution is given, and two values along u and v if their number is
+    /// even. Empty: 1 where the screen asks for two sheet pixels a voxel (and neither resolution
+    /// nor footprintWidth is given), but 0 where what is shown is thin (no opacity of the transfer
+    /// function above 0.25 a voxel, extinction scale included), where colours jump or values are
+    /// labels (TransferFunction::colorsJump), or, with a warning, where more than kMostDivided
+    /// blocks of 8x8x8 voxels can be seen: each has one sheet pixel up to five of the screen. Where
+    /// that is too coarse to see it, empty lets slices be drawn as one (mostJoined,
     /// RenderStats::joined), unless sigma, resolution or footprintWidth is given.
     std::optional<int> between;
     Tolerance tolerance;  ///< how far what is shown of a voxel may be from what is true

@@ -21,10 +21,11 @@ struct EvenLevels {
 using VoxelMasks = std::array<std::uint64_t, 8>;
 
 /// Mixes the blocks that a block becomes, where levels are even, as ValueMixer::mix does, and
-/// returns the voxels that are more than twice as opaque as anything that they become.
+/// returns the voxels that are more than twice as opaque as anything that they become, and others
+/// where `rise` is said and not so.
 /// @param slotMap    [kSlotCount]: what becomes of the slots of levels
 /// @param opacities  [kSlotCount]: of that
-/// @param rise       whether no level has less opacity than one below it
+/// @param rise       whether no level has less opacity than one below it, which is quicker
 /// @param mixed      [parts.within along u][parts.slices][parts.within along v]
 VoxelMasks mixEvenLevels(const MixWindow& window, const Subdivision& parts,
                          const EvenLevels& levels, const Slot* slotMap, const float* opacities,
