@@ -3,7 +3,7 @@
 # How time grows with volumes, pictures and threads: enlarges engine, ct_head and aneurism of the
 # shared data, makes an engine, a cloud and vessels of our own, measures all four methods, beside
 # VTK and VolPack if their drivers are given, and writes Markdown tables. FOLDER keeps the volumes
-# (3 GB). Takes a quarter of an hour to an hour on two cores.
+# (3 GB). Takes ten minutes to an hour on two cores.
 # Usage: bash scripts/measure_scale.sh DATA FOLDER [PEERS]
 #   DATA   folder of engine/, ct_head/ and aneurism/
 #   PEERS  folder of peer_vtk.py and peer_volpack.py
