@@ -35,6 +35,11 @@ deltasplat_cli_test(delta.max_error EXIT 1
     ARGS delta ${cube} d.vdb --tolerance-value 50 --max-error 0.5
     STDERR_MATCHES "deltasplat: grid \"cube_8x8x8_uint8\": got a largest error of [0-9]+; expected at most 0.5 .--max-error.")
 
+deltasplat_cli_test(delta.max_error_of_others EXIT 1
+    ARGS delta mixed.vdb d.vdb --max-error 50
+    STDERR "deltasplat: warning: mixed.vdb: left out velocity (vec3s)
+deltasplat: mixed.vdb: got velocity (vec3s); expected scalar grids alone, for others are left out (--max-error)")
+
 deltasplat_cli_test(delta.usage.extension EXIT 2 ARGS delta ${cube} d.nrrd
     STDERR "deltasplat: d.nrrd: got extension \".nrrd\"; expected .vdb")
 deltasplat_cli_test(delta.usage.axis EXIT 2 ARGS delta ${cube} d.vdb --axis w

@@ -5,8 +5,8 @@
 
 namespace deltasplat {
 
-bool forEachScalarGrid(const std::filesystem::path& input, const ReadOptions& options,
-                       const std::function<void(Volume)>& use, const Listener& listener) {
+std::string forEachScalarGrid(const std::filesystem::path& input, const ReadOptions& options,
+                              const std::function<void(Volume)>& use, const Listener& listener) {
     std::string others;
     VolumeVisitor visitor;
     visitor.volume = use;
@@ -15,7 +15,7 @@ bool forEachScalarGrid(const std::filesystem::path& input, const ReadOptions& op
     };
     forEachVolume(input, options, visitor, listener);
     if (!others.empty()) listener.warn(input.string() + ": left out " + others);
-    return others.empty();
+    return others;
 }
 
 }  // namespace deltasplat

@@ -91,7 +91,7 @@ std::vector<Volume> readInput(const ConvertCommand& command, const std::filesyst
     }
     ReadOptions reading = command.read;
     if (command.write.dropBackground) reading.bytesPerBlock = kBytesPerDroppedBlock;
-    complete = forEachScalarGrid(
+    const std::string others = forEachScalarGrid(
         input, reading,
         [&](Volume volume) {
             // The source says all that the codes do, and more.
@@ -99,6 +99,7 @@ std::vector<Volume> readInput(const ConvertCommand& command, const std::filesyst
             volumes.push_back(std::move(volume));
         },
         listener);
+    complete = others.empty();
     return volumes;
 }
 

@@ -88,7 +88,7 @@ void declareOptions(CLI::App& app, DeltaCommand& command) {
                    "themselves as a rule: smaller, and not lossless");
     deltas.addValue("--max-error", "E", command.file.maxError, number(0),
                     "Fail, and write nothing, if a value would come back with a\n"
-                    "larger error than E data units");
+                    "larger error than E data units, or a grid not at all");
     deltas.addValue("--tolerance", "T", command.file.tolerance.relative, number(0, 1),
                     withDefault("Keep a voxel's value while the true one stays within T times\n"
                                 "its magnitude",
@@ -156,7 +156,7 @@ ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
     DeltaFile file;
     Listener remarks;
     remarks.warning = listener.warning;
-    const bool complete = forEachScalarGrid(
+    const std::string others = forEachScalarGrid(
         files.input, reading,
         [&](const Volume& volume) {
             if (isOfCodes(volume) && reading.bits)
@@ -170,10 +170,14 @@ ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
             add(entry, stats);
         },
         partOf(listener, 0, kTakeShare));
+    if (command.file.maxError && !others.empty())
+        throw Error(ErrorCode::kFailed,
+                    gotExpected(files.input.string(), others,
+                                "scalar grids alone, for others are left out (--max-error)"));
     file.write(files.output);
     listener.report(1);
     stats.outputBytes = bytesOf({files.output});
-    stats.lossless = stats.lossless && complete;
+    stats.lossless = stats.lossless && others.empty();
     return stats;
 }
 

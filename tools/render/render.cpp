@@ -52,6 +52,16 @@ void warnOfUnusedLight(const CLI::App& app, const PictureOptions& picture,
     }
 }
 
+void warnOfUnusedJoin(const CLI::App& app, const RenderCommand& command, ProgressDisplay& display) {
+    if (!isGiven(app, "--join")) return;
+    for (const char* option : {"--between", "--resolution", "--sigma", "--deep"}) {
+        if (isGiven(app, option))
+            return display.warn(std::string("--join: has no effect with ") + option);
+    }
+    if (!command.picture.render.tolerance.isExact())
+        display.warn("--join: has no effect with a tolerance");
+}
+
 // @param inputs  all that are read
 void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command, Files inputs,
                          ProgressDisplay& display) {
@@ -68,6 +78,7 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command, File
     warnOfUnusedColorOptions(app, command, display);
     warnOfUnusedModeOptions(app, command, display);
     if (command.picture.render.mode != Mode::kComposite) return;
+    warnOfUnusedJoin(app, command, display);
     warnOfUnusedScatterOptions(app, command.picture.scatter, command.picture.shading,
                                command.picture.medium.emissionLights.has_value(), display);
     warnOfUnusedLight(app, command.picture, display);
