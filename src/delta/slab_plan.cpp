@@ -39,7 +39,7 @@ bool isWhole(const PlannedSlab& slab, const SliceCounts& writes, Encoding encodi
         case Encoding::kFewerWords:
             return hasFewerWordsWhole(slab);
         case Encoding::kFewerWordsOrVoxels:
-            return hasFewerWordsWhole(slab) && 5 * slab.visible < 6 * slab.deltas;
+            return hasFewerWordsWhole(slab) && 6 * slab.visible < 7 * slab.deltas;
         case Encoding::kFewerWordsOrWrites:
             return hasFewerWordsWhole(slab) && 3 * writes.visible < 4 * writes.deltas;
         case Encoding::kFewerWordsOrStamps:

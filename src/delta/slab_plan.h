@@ -16,7 +16,7 @@ enum class Encoding {
     kWhole,    ///< every slice anew (`sparse` and `traditional`)
     /// For each slab kWhole unless kChanges has something to splat in fewer words by a tenth.
     kFewerWords,
-    /// The same, or of fewer voxels by a sixth.
+    /// The same, or of fewer voxels by a seventh.
     kFewerWordsOrVoxels,
     /// The same, or in less writing by a quarter (MaskCounts::writes).
     kFewerWordsOrWrites,
