@@ -212,10 +212,7 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Camera& camera,
         hasOnePixelEach =
             !asksForSigma_ && view.pixelsPerVoxel * (1 + kSnap) < kLeastPixelsOfTwoSheetPixels;
     }
-    if (!options.resolution && between > 0)
-        resolution_ = 2;
-    else if (!options.resolution && hasOnePixelEach)
-        resolution_ = 1;
+    if (!options.resolution && (between > 0 || hasOnePixelEach)) resolution_ = between > 0 ? 2 : 1;
     parts_.slices = between + 1;
     parts_.within = between > 0 && std::fmod(resolution_, 2) == 0 ? 2 : 1;
     if (keepsSlices) return;
