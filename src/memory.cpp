@@ -91,7 +91,9 @@ void require(ErrorCode code, const std::string& what, double bytes) {
     if (bytes <= available) return;
     throw Error(code, what + ": needs " + humanBytes(bytes) + " of memory; expected at most " +
                           humanBytes(available) + ", which " +
-                          (available == left ? "`memoryLimit` leaves" : "is available"));
+                          (available == left ? "`memoryLimit` leaves (the program takes " +
+                                                   humanBytes(double(ownMemory().resident)) + ")"
+                                             : "is available"));
 }
 
 }  // namespace

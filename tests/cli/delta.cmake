@@ -83,9 +83,9 @@ deltasplat_cli_test(restore.stats_is_data EXIT 2 ARGS restore ball.vdb out.mhd -
 # A limit on memory is kept by saying so first.
 deltasplat_cli_test(memory.library_refused EXIT 1
     ARGS info frustum.vdb --max-memory 30M
-    STDERR_MATCHES "deltasplat: OpenVDB's library: needs 28.0 MiB of memory; expected at most [0-9.]+ MiB, which --max-memory leaves")
+    STDERR_MATCHES "deltasplat: OpenVDB's library: needs 28.0 MiB of memory; expected at most [0-9.]+ MiB, which --max-memory leaves .the program takes [0-9.]+ MiB.")
 deltasplat_cli_test(memory.refused EXIT 1 ARGS render ${cube} -o x.png --max-memory 1K
-    STDERR_MATCHES "deltasplat: ${cube}: needs [0-9.]+ .*of memory; expected at most 0 bytes, which --max-memory leaves")
+    STDERR_MATCHES "deltasplat: ${cube}: needs [0-9.]+ .*of memory; expected at most 0 bytes, which --max-memory leaves .the program takes [0-9.]+ MiB.")
 deltasplat_cli_test(memory.granted ARGS delta ${cube} d.vdb --max-memory 2G CREATES d.vdb)
 deltasplat_cli_test(memory.usage EXIT 2 ARGS info ${cube} --max-memory much
     STDERR "deltasplat: --max-memory: got much; expected a number of bytes, such as 500000000, 400M or 1.5G")
