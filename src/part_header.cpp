@@ -12,19 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json notesJson(const Notes& notes) {
-    Json json = Json::array();
-    for (const auto& [name, text] : notes) json.push_back({name, text});
-    return json;
-}
-
-Notes notesOf(const Json& json) {
-    Notes notes;
-    for (const Json& note : json)
-        notes.emplace_back(note.at(0).get<std::string>(), note.at(1).get<std::string>());
-    return notes;
-}
-
 std::string textOf(const Notes& notes, const std::string& name) {
     const auto found = std::find_if(notes.begin(), notes.end(),
                                     [&](const auto& note) { return note.first == name; });
@@ -53,8 +40,8 @@ std::string shareText(const SlabShare& share) {
 std::string headerText(const PartHeader& header) {
     const Json json = {{"share", {header.share.first, header.share.last, header.share.count}},
                        {"slabs", {header.firstSlab, header.lastSlab}},
-                       {"picture", notesJson(header.notes.picture)},
-                       {"part", notesJson(header.notes.part)},
+                       {"picture", Json(header.notes.picture)},
+                       {"part", Json(header.notes.part)},
                        {"method", methodName(header.method)},
                        {"tolerance", {header.tolerance.relative, header.tolerance.value}},
                        {"content", header.content},
@@ -69,7 +56,7 @@ PartHeader headerOf(const std::string& text) {
     header.share = {share.at(0).get<int>(), share.at(1).get<int>(), share.at(2).get<int>()};
     header.firstSlab = slabs.at(0).get<int>();
     header.lastSlab = slabs.at(1).get<int>();
-    header.notes = {notesOf(json.at("picture")), notesOf(json.at("part"))};
+    header.notes = {json.at("picture").get<Notes>(), json.at("part").get<Notes>()};
     header.method = methodOf(json.at("method").get<std::string>());
     header.tolerance = {json.at("tolerance").at(0).get<double>(),
                         json.at("tolerance").at(1).get<double>()};

@@ -29,19 +29,6 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kTitle = "deltasplat_slab_facts";
 constexpr const char* kSum = "sum";  // by which it is whole
 
-Json notesJson(const Notes& notes) {
-    Json json = Json::array();
-    for (const auto& [name, text] : notes) json.push_back({name, text});
-    return json;
-}
-
-Notes notesOf(const Json& json) {
-    Notes notes;
-    for (const Json& note : json)
-        notes.emplace_back(note.at(0).get<std::string>(), note.at(1).get<std::string>());
-    return notes;
-}
-
 // As it is in a file, which is UTF-8 whatever names are.
 std::string dumped(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -151,7 +138,7 @@ void requireFactsOf(const Json& json, const std::filesystem::path& input, const 
     Notes known;
     std::uint64_t mark = 0;
     try {
-        known = notesOf(json.at("options"));
+        known = json.at("options").get<Notes>();
         mark = wholeNumberOf<std::uint64_t>(json.at("input"));
     } catch (const std::exception&) {
         refuse(file, "something else", "facts of a picture's slabs");
@@ -159,7 +146,7 @@ void requireFactsOf(const Json& json, const std::filesystem::path& input, const 
     const auto text = [](const std::string& name, const std::string& value) {
         return name + (value.empty() ? "" : " ") + value;
     };
-    const Notes asked = notesOf(Json::parse(dumped(notesJson(options))));
+    const Notes asked = Json::parse(dumped(Json(options))).get<Notes>();
     const auto without = [&](const Notes& notes, const Notes& others) -> std::string {
         for (const auto& note : notes) {
             if (std::find(others.begin(), others.end(), note) == others.end())
@@ -205,7 +192,7 @@ void writeSlabFacts(const LayeredPicture& picture, const Notes& options,
     const LayeredPicture::Impl& all = picture.impl();
     const Volume& volume = *all.scene.impl().scene.volume;
     const bool byParts = isReadByParts(all);
-    Json json{{"options", notesJson(options)}, {"input", markOf(input)}, {"by_parts", byParts}};
+    Json json{{"options", Json(options)}, {"input", markOf(input)}, {"by_parts", byParts}};
     if (byParts) {
         SlabFacts facts = deltasplat::factsOf(all);
         facts.blocksSeen = all.scene.impl().blocksSeen(all.views.front()->axis().sliceAxis);
