@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -213,10 +212,7 @@ double PictureView::show(Layer& layer, Image& image) const {
 }
 
 ErrorBound PictureView::errorBound() const {
-    if (axis_->parts.joined > 1) {
-        const double unknown = std::numeric_limits<double>::infinity();
-        return {unknown, unknown};
-    }
+    if (axis_->parts.joined > 1) return kUnknownError;
     if (scene_.options.tolerance.isExact()) return {};
     if (scene_.painter && !scene_.painter->mayHold()) return {};
     std::optional<double> brightest;

@@ -88,8 +88,7 @@ std::function<bool(const VoxelLook&, const VoxelLook&)> looksHoldRule(const Voxe
 ErrorBound errorBound(const ClassTable& classes, const Tolerance& tolerance, Steps steps,
                       std::optional<double> ownBrightest) {
     if (tolerance.isExact()) return {};
-    const double unknown = std::numeric_limits<double>::infinity();
-    if (tolerance.relative == 0) return {unknown, unknown};
+    if (tolerance.relative == 0) return kUnknownError;
     double brightest = 0;
     double mostOpaque = 0;
     for (std::size_t i = 0; i < classes.size(); ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include "deltasplat/optics/class_table.h"
@@ -27,11 +28,15 @@ std::function<bool(const VoxelLook& held, const VoxelLook& look)> looksHoldRule(
     const VoxelUnits& units, const Tolerance& tolerance);
 
 /// Most that a picture under a tolerance may differ from the exact one, but for the rounding of
-/// floats; infinity where that is not known.
+/// floats, or kUnknownError.
 struct ErrorBound {
     double color = 0;  ///< of each colour channel, premultiplied
     double alpha = 0;
 };
+
+/// What nothing is proved of.
+inline constexpr ErrorBound kUnknownError = {std::numeric_limits<double>::infinity(),
+                                             std::numeric_limits<double>::infinity()};
 
 /// Which ways through a slice colours stand for.
 enum class Steps {
