@@ -12,6 +12,7 @@
 #include "delta/slice_joiner.h"
 #include "deltasplat/prepared_scene.h"
 #include "kept_memory.h"
+#include "optics/color_curve.h"
 #include "splat/step_colors.h"
 #include "view/seen_cone.h"
 
@@ -70,7 +71,7 @@ struct PreparedScene::Impl {
                                              bool inParts = false) const;
     /// Returns whether voxels differ in nothing but how much light they absorb, by the transfer
     /// function alone.
-    bool hasOneColor() const { return optics.transferFunction.colors.size() == 1; }
+    bool hasOneColor() const { return deltasplat::hasOneColor(optics.transferFunction); }
     /// Returns whether slices can be joined.
     bool canJoinSlices() const;
     /// Returns whether two can be for all cameras (optics/joined_classes.h), along whatever axis.

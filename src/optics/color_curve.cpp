@@ -56,13 +56,23 @@ glm::dvec3 shown(glm::dvec3 linear) {
 
 }  // namespace
 
+bool hasOneColor(const TransferFunction& function) {
+    return std::all_of(function.colors.begin(), function.colors.end(),
+                       [&](const TransferFunction::ColorPoint& point) {
+                           return point.rgb == function.colors.front().rgb;
+                       });
+}
+
 ColorCurve::ColorCurve(const TransferFunction& function)
     : space_(function.colorSpace),
       linearColors_(function.linearColors),
       first_(function.colors.front()),
       last_(function.colors.back()) {
-    for (std::size_t i = 1; i < function.colors.size(); ++i)
-        addStretch(function.colors[i - 1], function.colors[i]);
+    // What is turned into another space and back may not be quite what it was.
+    if (!hasOneColor(function)) {
+        for (std::size_t i = 1; i < function.colors.size(); ++i)
+            addStretch(function.colors[i - 1], function.colors[i]);
+    }
     for (TransferFunction::ColorPoint* end : {&first_, &last_})
         if (!linearColors_) end->rgb = eachOf(end->rgb, linearFromSrgb);
 }

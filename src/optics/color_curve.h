@@ -8,6 +8,9 @@
 
 namespace deltasplat {
 
+/// Returns whether all points have one colour, and so all values, to the last bit.
+bool hasOneColor(const TransferFunction& function);
+
 /// The colours of a transfer function, ready to be asked for many values: points are turned once
 /// into the space where colours are mixed.
 class ColorCurve {

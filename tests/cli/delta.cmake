@@ -84,6 +84,9 @@ deltasplat_cli_test(restore.stats_is_data EXIT 2 ARGS restore ball.vdb out.mhd -
 deltasplat_cli_test(memory.library_refused EXIT 1
     ARGS info frustum.vdb --max-memory 30M
     STDERR_MATCHES "deltasplat: OpenVDB's library: needs 28.0 MiB of memory; expected at most [0-9.]+ MiB, which --max-memory leaves .the program takes [0-9.]+ MiB.")
+deltasplat_cli_test(memory.images_library_refused EXIT 1
+    ARGS render ${cube} -o refused.jpg --background 0,0,0 --size 8x8 --max-memory 60M
+    STDERR_MATCHES "deltasplat: OpenImageIO's library: needs 112.0 MiB of memory; expected at most [0-9.]+ MiB, which --max-memory leaves .the program takes [0-9.]+ MiB.")
 deltasplat_cli_test(memory.refused EXIT 1 ARGS render ${cube} -o x.png --max-memory 1K
     STDERR_MATCHES "deltasplat: ${cube}: needs [0-9.]+ .*of memory; expected at most 0 bytes, which --max-memory leaves .the program takes [0-9.]+ MiB.")
 deltasplat_cli_test(memory.granted ARGS delta ${cube} d.vdb --max-memory 2G CREATES d.vdb)

@@ -259,6 +259,26 @@ TEST_F(Joined, notWhereLittleIsSaved) {
     }
 }
 
+// However many points say it, and in whatever space they are mixed.
+TEST_F(Joined, oneColorIsWhatAllPointsHave) {
+    const Volume volume = test::randomVolume(kBox, 5, 0.5);
+    RenderOptions options = optionsFor(Colors::kOne, 0.3, {0, 0, 1});
+    options.mostJoined = 8;
+    leastVoxelsJoined = volume.activeCount;
+    const RenderResult expected = render(volume, options);
+    EXPECT_EQ(expected.stats.joined, 8);
+    TransferFunction& function = options.optics.transferFunction;
+    function.colors.push_back({150, function.colors[0].rgb});
+    function.colors.push_back({255, function.colors[0].rgb});
+    for (const ColorSpace space : {ColorSpace::kRgb, ColorSpace::kHsv, ColorSpace::kHsvShortest,
+                                   ColorSpace::kLab, ColorSpace::kDiverging}) {
+        function.colorSpace = space;
+        const RenderResult result = render(volume, options);
+        EXPECT_EQ(result.stats.joined, 8);
+        EXPECT_EQ(result.image.rgba, expected.image.rgba);
+    }
+}
+
 TEST_F(Joined, notWhereVoxelsAreAskedFor) {
     const Volume volume = test::randomVolume(kBox, 5, 0.5);
     const RenderOptions plain = optionsFor(Colors::kSeveral, 0.3, kOblique);

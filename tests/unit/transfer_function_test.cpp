@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "optics/color_curve.h"
 #include "optics/hidden_values.h"
 #include "srgb.h"
 
@@ -189,6 +190,25 @@ TEST(TransferFunction, isConstantBeyondTheEnds) {
     EXPECT_EQ(function.opacityAt(1e300), 0.75);
     EXPECT_EQ(function.colorAt(0.5), glm::dvec3(0.1, 0.2, 0.3));
     EXPECT_EQ(function.colorAt(2.5), glm::dvec3(0.4, 0.5, 0.6));
+}
+
+// To the last bit, though spaces are left by rounding.
+TEST(TransferFunction, isConstantBetweenPointsOfOneColor) {
+    TransferFunction function = withOpacities({{1, 0.25, 0.5, 0}});
+    function.colors = {{1, {0.1, 0.73, 0.31}}, {2, {0.1, 0.73, 0.31}}, {5, {0.1, 0.73, 0.31}}};
+    for (const bool isLinear : {false, true}) {
+        function.linearColors = isLinear;
+        for (const ColorSpace space : {ColorSpace::kRgb, ColorSpace::kHsv, ColorSpace::kHsvShortest,
+                                       ColorSpace::kLab, ColorSpace::kDiverging}) {
+            function.colorSpace = space;
+            for (const double x : {-1.0, 1.0, 1.3, 2.0, 4.9, 5.0, 7.0})
+                EXPECT_EQ(function.colorAt(x), function.colorAt(0));
+        }
+    }
+    EXPECT_EQ(function.colorAt(3), function.colors[0].rgb);
+    EXPECT_TRUE(hasOneColor(function));
+    function.colors[1].rgb.b = 0.32;
+    EXPECT_FALSE(hasOneColor(function));
 }
 
 TEST(TransferFunction, reachesHalfWayAtTheMidpoint) {

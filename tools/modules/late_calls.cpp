@@ -8,7 +8,6 @@
 #include <string>
 
 #include "deltasplat/error.h"
-#include "memory.h"
 #include "modules/load_modules.h"
 #include "printable.h"
 
@@ -23,17 +22,13 @@ struct LateCall {
 };
 static_assert(sizeof(LateCall) == 24 && std::atomic<void*>::is_always_lock_free);
 
-constexpr const char* kOpenVdb = "openvdb";
-constexpr double kOpenVdbBytes = 28 << 20;  // resident, once it is loaded
-
 void* opened(const std::string& module) {
     static std::mutex mutex;
     static std::map<std::string, void*> libraries;
     const std::lock_guard lock(mutex);
     void*& library = libraries[module];
-    if (library) return library;
-    if (module == kOpenVdb) requireMemory("OpenVDB's library", kOpenVdbBytes);
-    return library = openModule(module.c_str(), RTLD_LAZY);
+    if (!library) library = openModule(module.c_str(), RTLD_LAZY);
+    return library;
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "deltasplat/error.h"
+#include "memory.h"
 #include "modules/exr_module.h"
 #include "modules/image_module.h"
 #include "modules/medical_module.h"
@@ -26,6 +27,21 @@ namespace {
                          const std::string& expected) {
     throw Error(ErrorCode::kFailed,
                 gotExpected("module " + name, got, expected + ", installed with the program"));
+}
+
+// What a module takes once it is loaded.
+void requireMemoryOf(const std::string& name) {
+    struct Library {
+        const char* module;
+        const char* name;
+        double mebibytes;  // resident
+    };
+    static constexpr Library kLibraries[] = {{"openvdb", "OpenVDB's library", 28},
+                                             {"images", "OpenImageIO's library", 112},
+                                             {"medical", "ITK's library", 19},
+                                             {"exr", "OpenEXR's library", 4}};
+    for (const Library& library : kLibraries)
+        if (name == library.module) requireMemory(library.name, library.mebibytes * 0x1p20);
 }
 
 std::filesystem::path fileOf(const std::string& name) {
@@ -63,6 +79,7 @@ const Module& load(const char* name) {
 
 void* openModule(const char* name, int binding) {
     const std::filesystem::path file = fileOf(name);
+    requireMemoryOf(name);
     void* const library = openLibrary(file.c_str(), binding | RTLD_LOCAL);
     if (!library) {
         const char* const why = ::dlerror();
