@@ -50,7 +50,7 @@ expect_same noted json 1e-5
 # Wide pixels: a third of them, each with the middle of three.
 show wide --frame-width 24 --size 32x96 --pixel-aspect 3 --resolution 2
 show fine --frame-width 24 --size 96x96 --resolution 2
-"$oiiotool" --info -v wide.exr | grep -q 'PixelAspectRatio: 3$' || fail "wide pixels are not noted"
+grep -q 'PixelAspectRatio: 3$' <<<"$("$oiiotool" --info -v wide.exr)" || fail "wide pixels are not noted"
 for column in 3 13 16 22; do
     "$oiiotool" -q wide.exr --crop 1x96+$column+0 --origin +0+0 --fullpixels -o one.exr
     "$oiiotool" -q fine.exr --crop 1x96+$((3 * column + 1))+0 --origin +0+0 --fullpixels -o two.exr

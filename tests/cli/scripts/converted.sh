@@ -11,4 +11,5 @@ cd "$scratch"
 "$program" convert "$fixtures/ball.vdb" ball.nii -q
 "$program" diff "$fixtures/ball.vdb" ball.nii --ignore-active -q
 "$program" diff ball.nii "$fixtures/ball.vdb" --ignore-active -q
-"$program" diff "$fixtures/ball.vdb" ball.nii --ignore-active --json -q | grep -q '"transform_equal": true'
+"$program" diff "$fixtures/ball.vdb" ball.nii --ignore-active --json -q >diff.json
+grep -q '"transform_equal": true' diff.json

@@ -38,7 +38,7 @@ for source in "$raw" noise.vdb; do
     "$program" convert "$source" plain.vdb -q
     "$program" restore one.vdb again.vdb -q
     "$program" diff plain.vdb again.vdb --fail 0 --warn 0 -q
-    "$program" info one.vdb | grep -q 'delta grid .* exact' || fail "info: got no exact delta grid"
+    grep -q 'delta grid .* exact' <<<"$("$program" info one.vdb)" || fail "info: got no exact delta grid"
 
     "$program" delta "$source" voxels.vdb --no-pack -q --threads 1
     "$program" delta "$source" two.vdb --no-pack -q --threads 3

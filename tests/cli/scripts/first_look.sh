@@ -21,7 +21,7 @@ same first preset || { echo "first look: got another picture; expected ct-soft-t
 ! same first plain || { echo "--no-shade: got the same picture"; exit 1; }
 ! same first ramp || { echo "--range: got the same picture; expected a ramp"; exit 1; }
 says() { # TEXT OPTIONS...
-    "$program" render "$scan" -o said.png --size 64x64 "${@:2}" 2>&1 | grep -qF -- "$1" ||
+    grep -qF -- "$1" <<<"$("$program" render "$scan" -o said.png --size 64x64 "${@:2}" 2>&1)" ||
         { echo "${*:2}: expected '$1'"; exit 1; }
 }
 says "--mode xray: adds up Hounsfield units" --mode xray

@@ -53,7 +53,7 @@ for channel in Z depth_front.Z ZBack P.X P.Y P.Z N.X N.Y N.Z emission.R ambient.
     direct_2.B transmittance samples; do
     [[ ", $names," == *", $channel,"* || ", $names," == *", $channel ("* ]] || fail "channels: got $names; expected $channel"
 done
-"$oiiotool" --info -v aovs.exr | grep -q 'deltasplat:depthOpacity: "0.25"' || fail "channels: got no opacity of depths"
+grep -q 'deltasplat:depthOpacity: "0.25"' <<<"$("$oiiotool" --info -v aovs.exr)" || fail "channels: got no opacity of depths"
 "$oiiotool" -q aovs.exr --ch emission.R,emission.G,emission.B aovs.exr --ch direct.R,direct.G,direct.B \
     --add aovs.exr --ch ambient.R,ambient.G,ambient.B --add aovs.exr --ch R,G,B --fail 2e-2 --diff \
     >/dev/null || fail "channels of light: got another sum than the picture"

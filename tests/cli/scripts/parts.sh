@@ -21,7 +21,7 @@ differ() { [[ $1 != "$2" ]] || fail "$3: the same pixels"; }
 whole=engine_32x32x32_uint8.raw
 part=part_32x32x16_uint8.raw
 "$program" synth engine $whole --dims 32x32x32
-tail -c +8193 $whole | head -c 16384 >$part
+head -c 24576 $whole | tail -c 16384 >$part
 for mode in composite xray mip; do
     wanted=$(pixels $part --origin 0,0,8 --mode $mode --range 10,200)
     options=(--mode $mode --range 10,200)
@@ -45,7 +45,8 @@ same "$wanted" "$(pixels $whole "${camera[@]}" "${planes[@]}")" "planes"
 differ "$wanted" "$(pixels $whole "${camera[@]}" "${planes[@]:2}")" "one plane"
 same "$wanted" "$(pixels $whole "${camera[@]}" --mask mask_32x32x32_uint8.raw)" "mask"
 same "$wanted" "$(pixels $whole "${camera[@]}" --mask mask.vdb)" "mask.vdb"
-grid=$("$program" info mask.vdb --list | sed -n 's/^ *\([a-z_0-9]*\) .*/\1/p' | head -n 1)
+"$program" info mask.vdb --list | sed -n 's/^ *\([a-z_0-9]*\) .*/\1/p' >grids
+grid=$(head -n 1 grids)
 same "$wanted" "$(pixels $whole "${camera[@]}" --mask "mask.vdb:$grid")" "grid of a mask"
 cp mask_32x32x32_uint8.raw plain.raw
 same "$wanted" "$(pixels $whole "${camera[@]}" --dims 32x32x32 --type uint8 --mask plain.raw)" "plain"

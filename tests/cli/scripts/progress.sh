@@ -66,7 +66,7 @@ line 'error end exit_code=3 '
 "$program" render "$fixtures/two.vdb" -o out.exr --size 8x8 -qq --log run.json --json-log
 [[ $(grep -c '^{"time":".*","process":[0-9]*,"level":".*","text":".*}$' run.json) == $(wc -l <run.json) ]] ||
     { cat run.json; exit 1; }
-tail -1 run.json | grep -q '"exit_code":0,' || { cat run.json; exit 1; }
+grep -q '"exit_code":0,' <<<"$(tail -1 run.json)" || { cat run.json; exit 1; }
 cp "$fixtures/two.vdb" kept.vdb
 for arguments in "--log no/folder.log" "--json-log" "--log kept.vdb"; do
     ! "$program" render "$fixtures/two.vdb" -o other.exr -qq $arguments 2>said || exit 1

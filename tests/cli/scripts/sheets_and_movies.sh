@@ -14,7 +14,7 @@ frames=(render in.#.vdb --size 32x24 -qq --background 0.2,0.1,0.05 --dither 0)
 # Cells are the frames by themselves, row by row; those without a file are black, or the background.
 "$program" "${frames[@]}" --frames 1-4 --missing black -o one.#.png
 expect_files "one.1.png one.2.png one.3.png one.4.png" 'one.*'
-"$oiiotool" --stats one.3.png 2>&1 | grep -q "Constant: Yes" || fail "frame 3 is not of one colour"
+grep -q "Constant: Yes" <<<"$("$oiiotool" --stats one.3.png 2>&1)" || fail "frame 3 is not of one colour"
 ! same one.2.png one.1.png || fail "frames 1 and 2 are one picture"
 "$program" "${frames[@]}" --frames 1-4 --missing black -o sheet.png --contact-sheet 3x2 --threads 2
 for cell in 1+0+0 2+32+0 3+64+0 4+0+24; do

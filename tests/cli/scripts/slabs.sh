@@ -54,7 +54,7 @@ for view in front back "iso --projection perspective"; do
     # shellcheck disable=SC2086
     folds "${ball[@]}" --extinction 50 --view $view
 done
-"$oiiotool" --info -v one7.exr | grep -q 'pixel data origin: x=-4, y=-2' || fail "no overscan"
+grep -q 'pixel data origin: x=-4, y=-2' <<<"$("$oiiotool" --info -v one7.exr)" || fail "no overscan"
 
 # Parts of a delta grid that is seen along its slices read what they show alone, once one of them
 # has noted what all have to know; those of anything else read all, and say nothing of it.
@@ -119,7 +119,7 @@ same_files exr --autocrop --compression piz --background 0,0,0,0.5
 same_files exr --region 20x10+5+7
 expect_code 0 "$program" fold p.1.slabs p.2.slabs -o dull.exr --tone filmic
 expect_said "deltasplat: warning: --tone: has no effect on an .exr, which holds light as it is"
-"$oiiotool" --info -v all.png | grep -q 'partCommandLine: "deltasplat render .*--slab-range 1/2' ||
+grep -q 'partCommandLine: "deltasplat render .*--slab-range 1/2' <<<"$("$oiiotool" --info -v all.png)" ||
     fail "all.png does not say how its parts were made"
 
 # The promise of a tolerance is the same.
