@@ -48,8 +48,11 @@ void requireRoom(const Tolerance& tolerance, const Volume& volume) {
                                 expected + ": values are stored with errors up to " +
                                     numberText(codeError) + " (" + book.name() + " code book)"));
     };
-    if (tolerance.value > 0 && tolerance.value < codeError)
-        refuse("`tolerance.value`", tolerance.value, "at least " + numberText(codeError));
+    if (tolerance.value > 0 && tolerance.value < codeError) {
+        refuse("`tolerance.value`", tolerance.value,
+               "at least " + numberText(codeError) +
+                   (tolerance.relative > 0 ? " with `tolerance.relative`, any without" : ""));
+    }
     if (tolerance.relative > 0 && book.relativeError == 0)
         refuse("`tolerance.relative`", tolerance.relative,
                "a larger share, or `tolerance.value`, for these values");

@@ -91,6 +91,13 @@ deltasplat_cli_test(parts.labels_of_file CREATES out.png
 deltasplat_cli_test(parts.labels_converted CREATES out.nrrd
     ARGS convert cube_labels.nhdr out.nrrd
     STDERR "deltasplat: warning: out.nrrd: does not say that its values are labels, as the input does; --tf labels shows them as such")
+deltasplat_cli_test(parts.labels_held CREATES out.vdb
+    ARGS delta cube_labels.nhdr out.vdb --tolerance-value 50
+    STDERR "deltasplat: warning: out.vdb: does not say that its values are labels, as the input does; --tf labels shows them as such
+deltasplat: warning: out.vdb: has other labels than the input, taken for quantities")
+deltasplat_cli_test(parts.labels_of_surface CREATES out.png
+    ARGS render cube_labels.nhdr -o out.png --isovalue 50
+    STDERR "deltasplat: warning: cube_labels.nhdr: a surface takes labels for quantities; without it --show-labels shows some of them")
 deltasplat_cli_test(parts.labels_of_xray CREATES out.exr
     ARGS render cube_8x8x8_uint8.raw -o out.exr --mode xray --tf labels.ctbl --hide-labels 1
     STDERR "deltasplat: warning: --tf: has no effect with --mode xray

@@ -31,12 +31,15 @@ namespace {
 constexpr double kWorkShare = 0.5;
 constexpr double kBytesPerByte = 40;
 
-// No output says of itself that it holds labels, and who reads it takes them for quantities.
-void warnOfLostLabels(const ConversionFiles& files, bool areLabels, const Listener& listener) {
-    if (!areLabels) return;
-    listener.warn(files.output.string() +
+// No output says of itself that it holds labels, and who reads it takes them for quantities, as a
+// tolerance does.
+void warnOfLostLabels(const ConversionFiles& files, double maxError, const Listener& listener) {
+    const std::string output = files.output.string();
+    listener.warn(output +
                   ": does not say that its values are labels, as the input does; --tf labels shows "
                   "them as such");
+    if (maxError > 0)
+        listener.warn(output + ": has other labels than the input, taken for quantities");
 }
 
 ConversionStats convertOne(const ConversionFiles& files, const Convert& convert,
@@ -47,7 +50,7 @@ ConversionStats convertOne(const ConversionFiles& files, const Convert& convert,
         bytesOf(checkConversionFiles(files.input, files.output, files.stats));
     const bool areLabels = saysLabels(files.input);
     ConversionStats stats = convert(files, listener);
-    warnOfLostLabels(files, areLabels, listener);
+    if (areLabels) warnOfLostLabels(files, stats.maxError, listener);
     stats.inputBytes = bytes;
     stats.seconds = secondsSince(begin);
     return stats;

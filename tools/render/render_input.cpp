@@ -313,7 +313,13 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
     } else if (!saysTable && mixesVoxels(picture) && saysLabels(input) && !anyBroken(volume)) {
         warnOfMixedLabels(input.string(), picture, listener);
     }
-    if (options.optics.surface) finishSurface(picture, volume, options.optics, listener);
+    if (options.optics.surface) {
+        if (!anyBroken(volume) && saysLabels(input))
+            listener.warn(input.string() +
+                          ": a surface takes labels for quantities; without it --show-labels shows "
+                          "some of them");
+        finishSurface(picture, volume, options.optics, listener);
+    }
 }
 
 // Notes what of a frame is in the picture.
