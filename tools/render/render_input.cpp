@@ -44,6 +44,11 @@ std::optional<double> anyBroken(const Volume& volume) {
     return {};
 }
 
+// Whether a file says that its values are labels, and they can be.
+bool holdsLabels(const std::filesystem::path& input, const Volume& volume) {
+    return saysLabels(input) && !anyBroken(volume);
+}
+
 // Who sees little of it should know why.
 void warnOfOtherData(const Preset& preset, const Volume& volume, const Listener& listener) {
     if (volume.empty()) return;
@@ -78,7 +83,7 @@ const Preset* presetOf(const std::filesystem::path& input, const PictureOptions&
         return parseTransferFunction(picture.transferFunction).preset;
     const bool isFree = picture.render.mode == Mode::kComposite && !picture.render.optics.range;
     if (!isFree) return nullptr;
-    if (saysLabels(input) && !anyBroken(volume)) return findPreset(kLabelPreset);
+    if (holdsLabels(input, volume)) return findPreset(kLabelPreset);
     return isHounsfield(volume) ? findPreset(kScanPreset) : nullptr;
 }
 
@@ -310,11 +315,11 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
     if (options.optics.transferFunction.categorical && !options.optics.surface) {
         warnOfLabels(saysTable ? "--tf" : input.string(), picture, preset, volume,
                      options.optics.transferFunction, listener);
-    } else if (!saysTable && mixesVoxels(picture) && saysLabels(input) && !anyBroken(volume)) {
+    } else if (!saysTable && mixesVoxels(picture) && holdsLabels(input, volume)) {
         warnOfMixedLabels(input.string(), picture, listener);
     }
     if (options.optics.surface) {
-        if (!anyBroken(volume) && saysLabels(input))
+        if (holdsLabels(input, volume))
             listener.warn(input.string() +
                           ": a surface takes labels for quantities; without it --show-labels shows "
                           "some of them");
