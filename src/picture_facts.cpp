@@ -84,6 +84,7 @@ SlabFacts factsOf(const Picture& picture) {
     if (picture.views.empty()) return facts;
     const PackedDeltas& deltas = picture.views.front()->axis().deltas();
     facts.slabs = deltas.slabs;
+    facts.joined = picture.views.front()->axis().parts.joined;
     const SlabPlanner planner(deltas.box);
     facts.blocksPerSlab = planner.shortest().blocks();
     if (deltas.slabs.size() > 1)

@@ -106,6 +106,13 @@ double stepsOf(const Factorization& view, const Volume& volume) {
     return std::abs(steps - 1) < kSame ? 1 : steps;
 }
 
+glm::dvec3 indexOfEye(const Factorization& view) {
+    const glm::ivec3 order = sliceOrder(view.sliceAxis);
+    glm::dvec3 eye;
+    for (int i = 0; i < 3; ++i) eye[order[i]] = (*view.eye)[i];
+    return eye;
+}
+
 SeenCone seenCone(const PreparedScene::Impl& scene, const Camera& camera, const Factorization& view,
                   const SheetPlan& plan) {
     const Subdivision parts = plan.partsIn(view);

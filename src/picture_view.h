@@ -30,6 +30,10 @@ struct ViewPlan {
 /// the straight one; from an eye, each pixel has its own.
 double stepsOf(const Factorization& view, const Volume& volume);
 
+/// Returns the index position (x, y, z) that lines of sight of a view begin at.
+/// @param view  from an eye
+glm::dvec3 indexOfEye(const Factorization& view);
+
 /// Returns what of the volume a view from an eye may show.
 SeenCone seenCone(const PreparedScene::Impl& scene, const Camera& camera, const Factorization& view,
                   const SheetPlan& plan);

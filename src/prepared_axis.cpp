@@ -10,7 +10,6 @@
 #include "default_floats.h"
 #include "delta/code_blocks.h"
 #include "delta/slab_facts.h"
-#include "delta/square_change.h"
 #include "delta/value_mixer.h"
 #include "deltasplat/error.h"
 #include "medium/room.h"
@@ -105,7 +104,6 @@ struct AxisRequest {
     int sliceAxis;
     bool descending;
     Subdivision parts;
-    glm::dvec2 shiftPerSlice;
     SeenThrough seenThrough;  // of joined slices, which of two is behind
     double steps;
     Encoding encoding = Encoding::kChanges;
@@ -128,21 +126,9 @@ std::shared_ptr<const PackedDeltas> sharedWords(const AxisRequest& request,
     return takeNumbers(before->classes(), classes) ? before->words : nullptr;
 }
 
-// Whether it may be seen that voxels beside each other become one: if it changes light or opacity
-// by more than a 256th on average, or by more than a 128th (42 dB) from place to place.
-bool showSquares(const DeltaPacker& packer, const ClassTable& classes, const AxisRequest& request,
-                 const JoinedRun& run) {
-    constexpr double kMostGained = 1.0 / 256;
-    constexpr double kMostRms = 1.0 / 128;
-    const std::optional<SquareChange> change = packer.squareChange(
-        lightsOf(classes.atSteps(run.steps)),
-        {request.shiftPerSlice, run.seenThrough == SeenThrough::kFirst, run.slices, run.within});
-    return !change || std::abs(change->gained) > kMostGained || change->rms > kMostRms;
-}
-
 std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
                                             const AxisRequest& request, const Listener& listener) {
-    Subdivision parts = request.parts;
+    const Subdivision& parts = request.parts;
     const PreparedAxis* const before = request.before;
     const Volume& volume = *scene.scene.volume;
     const Tolerance& tolerance = scene.options.tolerance;
@@ -164,7 +150,8 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     if (encoding == Encoding::kFewerWordsOrStamps && !classes.oneDigit())
         encoding = Encoding::kFewerWords;
     std::shared_ptr<const PackedDeltas> words = sharedWords(request, scene, classes);
-    JoinedRun run{parts.joined, parts.joinedWithin, request.seenThrough, request.steps / first};
+    const JoinedRun run{parts.joined, parts.joinedWithin, request.seenThrough,
+                        request.steps / first};
     std::optional<SliceJoiner> joiner;
     if (parts.joined > 1) {
         joiner.emplace(joinerOf(classes, run));
@@ -199,12 +186,6 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     std::shared_ptr<DeltaPacker> packer;
     if (!words) {
         packer = std::make_shared<DeltaPacker>(volume, pack);
-        while (run.within > 1 && showSquares(*packer, classes, request, run)) {
-            run.within = pack.joinedWithin = parts.joinedWithin = run.within / 2;
-            joiner = joinerOf(classes, run);
-            packer.reset();
-            packer = std::make_shared<DeltaPacker>(volume, pack);
-        }
         const bool inParts =
             request.mayBeParted && packer->canBeParted() && packer->mostBytes() > scene.wordBytes;
         words = std::make_shared<const PackedDeltas>(inParts ? packer->packOrPlan(scene.wordBytes)
@@ -224,14 +205,6 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     return std::make_shared<const PreparedAxis>(
         PreparedAxis{request.sliceAxis, parts, std::move(words), request.steps, std::move(colors),
                      std::move(packer), std::move(joiner), request.seen});
-}
-
-// Index position (x, y, z) that lines of sight begin at.
-glm::dvec3 eyeOf(const Factorization& view) {
-    const glm::ivec3 order = sliceOrder(view.sliceAxis);
-    glm::dvec3 eye;
-    for (int i = 0; i < 3; ++i) eye[order[i]] = (*view.eye)[i];
-    return eye;
 }
 
 std::size_t countBlocks(const PreparedScene::Impl& scene, int sliceAxis) {
@@ -342,10 +315,7 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
     const bool areSums = hasOneColor() && parts.joinedWithin == 1;
     const bool isOfSteps = isJoined && !areSums && (parts.joined > 2 || !canPairSlices());
     const bool fromEnd = descending || (isJoined && !view.frontToBack);
-    AxisRequest request{sliceAxis,
-                        descending,
-                        parts,
-                        view.shiftPerSlice,
+    AxisRequest request{sliceAxis, descending, parts,
                         view.frontToBack ? SeenThrough::kSecond : SeenThrough::kFirst,
                         isForOne || isOfSteps ? stepsOf(view, *scene.volume) : 1};
     request.encoding = encoding;
@@ -362,22 +332,19 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
             parts.slices, parts.within,  parts.joined, parts.joinedWithin};
     for (const glm::ivec2& slant : parts.joinedSlants()) key.insert(key.end(), {slant.x, slant.y});
     if (isOfSteps) key.push_back(std::bit_cast<std::int64_t>(request.steps));
-    // Whether they may be seen depends on where lines of sight go.
-    for (int i = 0; i < 2 && parts.joinedWithin > 1; ++i)
-        key.push_back(std::bit_cast<std::int64_t>(view.shiftPerSlice[i]));
     Key otherKey = key;
     otherKey[2] = int(!fromEnd);
     std::shared_ptr<Place> otherWay;
     std::shared_ptr<Place> place;
     {
         const std::lock_guard lock(mutex_);
-        if (packsSeen) forgetOtherEyes(eyeOf(view));
+        if (packsSeen) forgetOtherEyes(indexOfEye(view));
         const auto other = places_.find(otherKey);
         if (other != places_.end()) otherWay = other->second;
         std::shared_ptr<Place>& known = places_[key];
         if (!known) known = std::make_shared<Place>();
         known->lastUse = ++uses_;
-        if (packsSeen) known->eye = eyeOf(view);
+        if (packsSeen) known->eye = indexOfEye(view);
         place = known;
         if (isJoined && !view.eye) forgetSlants(key);
     }

@@ -11,6 +11,7 @@
 #include "delta/packed_deltas.h"
 #include "delta/slice_joiner.h"
 #include "deltasplat/prepared_scene.h"
+#include "join_judge.h"
 #include "kept_memory.h"
 #include "optics/color_curve.h"
 #include "splat/step_colors.h"
@@ -72,6 +73,8 @@ struct PreparedScene::Impl {
     /// Returns whether voxels differ in nothing but how much light they absorb, by the transfer
     /// function alone.
     bool hasOneColor() const { return deltasplat::hasOneColor(optics.transferFunction); }
+    /// Whether it is seen that slices are joined.
+    JoinJudge joinJudge;
     /// Returns whether slices can be joined.
     bool canJoinSlices() const;
     /// Returns whether two can be for all cameras (optics/joined_classes.h), along whatever axis.

@@ -55,7 +55,9 @@ class CompositeRender {
           stats_(stats) {}
 
     void run(const Listener& listener) {
+        const Clock::time_point start = Clock::now();
         plan_.emplace(scene_, camera_, wanted_.deep != nullptr, listener);
+        stats_.prepareSeconds += secondsSince(start);
         const std::vector<Factorization>& views = plan_->views;
         for (std::size_t i = 0; i < views.size(); ++i) {
             const auto share = [&](double part) { return (double(i) + part) / views.size(); };

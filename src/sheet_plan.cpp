@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "deltasplat/error.h"
 #include "dims_text.h"
@@ -125,16 +126,10 @@ JoinedSlants slantsOf(const Factorization& view, int joined, int within) {
     return joinedSlants(view.shiftPerSlice * (1 - kSnap), joined, within);
 }
 
-// What becomes one, where nobody says otherwise.
-struct Joined {
-    int slices = 1;
-    int within = 1;  // as Subdivision::joinedWithin
-};
-
 // Whether so many slices may be joined, more than two: as far as so many voxels side by side cover
 // a few pixels, none of them is moved by more than a quarter of one, and what is thin stays as
 // dense.
-bool mayJoin(const Factorization& view, const Joined& joined) {
+bool mayJoin(const Factorization& view, const JoinedVoxels& joined) {
     constexpr double kMostPixelsOfAll = 4;
     constexpr double kMostPixelsMoved = 0.25;
     if (joined.slices * view.pixelsPerVoxel * (1 - kSnap) > kMostPixelsOfAll) return false;
@@ -143,25 +138,29 @@ bool mayJoin(const Factorization& view, const Joined& joined) {
     return slants.keepsDensity && moved * (1 - kSnap) <= kMostPixelsMoved;
 }
 
-// Returns what is joined of more than two slices, if these may be. Voxels beside each other become
-// one as far as an edge, which may move from one of them to another, moves by less than a fifth of
-// a pixel; and of so many slices that little goes on from some to the next, but no more, which
-// would take longer to join than they save.
-std::optional<Joined> manyJoined(const Factorization& view, int most) {
+// Returns what may be joined of more than two slices, the most first. Voxels beside each other
+// become one as far as an edge, which may move from one of them to another, moves by less than a
+// fifth of a pixel; and of so many slices that little goes on from some to the next, but no more,
+// which would take longer to join than they save.
+std::vector<JoinedVoxels> manyJoined(const Factorization& view, int most) {
     constexpr double kMostPixelsBeside = 0.1875;
     constexpr int kDepth = 8;
+    std::vector<JoinedVoxels> may;
     for (int within = kMostJoinedWithin; within > 1; within /= 2) {
         if ((within - 1) * view.pixelsPerVoxel * (1 - kSnap) > kMostPixelsBeside) continue;
-        for (int slices = kDepth * within; slices <= most; slices *= 2)
-            if (mayJoin(view, {slices, within})) return Joined{slices, within};
+        for (int slices = kDepth * within; slices <= most; slices *= 2) {
+            if (!mayJoin(view, {slices, within})) continue;
+            may.push_back({slices, within});
+            break;
+        }
     }
     for (int slices = most; slices > 2; slices /= 2)
-        if (mayJoin(view, {slices, 1})) return Joined{slices, 1};
-    return {};
+        if (mayJoin(view, {slices, 1})) may.push_back({slices, 1});
+    return may;
 }
 
-Joined joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
-                     const Factorization& view) {
+JoinedVoxels joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
+                           const Factorization& view) {
     const SplatOptions& options = scene.options;
     const Volume& volume = *scene.scene.volume;
     if (options.mostJoined < 2 || options.resolution || options.between || options.sigma ||
@@ -173,10 +172,12 @@ Joined joinedUnasked(const PreparedScene::Impl& scene, const Camera& camera,
     const bool isWorthIt =
         scene.hasOneColor() || volume.activeCount >= kTimesLarger * leastVoxelsJoined;
     const bool canBeMany = options.mostJoined > 2 && !view.eye && isWorthIt;
-    if (canBeMany) {
-        if (const std::optional<Joined> many = manyJoined(view, options.mostJoined)) return *many;
-    }
-    return {canBeMany || scene.canPairSlices() ? 2 : 1};
+    std::vector<JoinedVoxels> may;
+    if (canBeMany) may = manyJoined(view, options.mostJoined);
+    if (canBeMany || scene.canPairSlices()) may.push_back({2, 1});
+    for (const JoinedVoxels& joined : may)
+        if (!scene.joinJudge.mayBeSeen(joined, scene, view)) return joined;
+    return {};
 }
 
 }  // namespace
@@ -216,7 +217,7 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Camera& camera,
     parts_.slices = between + 1;
     parts_.within = between > 0 && std::fmod(resolution_, 2) == 0 ? 2 : 1;
     if (keepsSlices) return;
-    const Joined joined = joinedUnasked(scene, camera, view);
+    const JoinedVoxels joined = joinedUnasked(scene, camera, view);
     parts_.joined = joined.slices;
     parts_.joinedWithin = joined.within;
 }

@@ -91,6 +91,7 @@ Json factsJson(const SlabFacts& facts) {
     for (const SlabFacts::Seen& slab : facts.seen)
         seen.push_back({slab.work, slab.blocks.x, slab.blocks.y});
     return {{"blocks_seen", facts.blocksSeen},
+            {"joined", facts.joined},
             {"blocks_per_slab", facts.blocksPerSlab},
             {"slabs", std::move(slabs)},
             {"seen", std::move(seen)},
@@ -103,6 +104,7 @@ SlabFacts factsOf(const Json& json, const std::filesystem::path& file) {
     SlabFacts facts;
     facts.file = file.string();
     facts.blocksSeen = wholeNumberOf<std::size_t>(json.at("blocks_seen"));
+    facts.joined = wholeNumberOf<int>(json.at("joined"));
     facts.blocksPerSlab = wholeNumberOf<int>(json.at("blocks_per_slab"));
     for (const Json& slab : json.at("slabs")) facts.slabs.push_back(slabOf(slab));
     for (const Json& slab : json.at("seen")) {

@@ -19,7 +19,6 @@
 #include "delta/slab_facts.h"
 #include "delta/slice_joiner.h"
 #include "delta/slot_holder.h"
-#include "delta/square_change.h"
 #include "deltasplat/error.h"
 #include "floor_div.h"
 #include "memory.h"
@@ -359,13 +358,6 @@ DeltaPacker::DeltaPacker(DeltaPacker&&) noexcept = default;
 
 bool DeltaPacker::canBeParted() const {
     return !impl_->options.mixer && !impl_->options.painter && !impl_->holder;
-}
-
-std::optional<SquareChange> DeltaPacker::squareChange(std::span<const glm::dvec4> lights,
-                                                      const JoinedSquares& squares) const {
-    const ClassReader reader(impl_->slotMap, impl_->ramps ? &*impl_->ramps : nullptr,
-                             impl_->options.sliceAxis);
-    return deltasplat::squareChange(impl_->blocks, reader, lights, squares);
 }
 
 double DeltaPacker::mostBytes() const {

@@ -110,9 +110,6 @@ IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, const Subdivision& part
 /// the active voxels; deterministic; multi-threaded.
 PackedDeltas packDeltas(const Volume& volume, const PackOptions& options);
 
-struct JoinedSquares;
-struct SquareChange;
-
 /// Slabs [first, last).
 struct SlabRange {
     int first;
@@ -130,10 +127,6 @@ class DeltaPacker {
 
     /// Whether parts can be made: no voxel is held, divided or painted.
     bool canBeParted() const;
-    /// Returns what becomes of light and opacity if voxels beside each other become one.
-    /// @param lights  of each class, over a slice: premultiplied RGBA
-    std::optional<SquareChange> squareChange(std::span<const glm::dvec4> lights,
-                                             const JoinedSquares& squares) const;
     /// The most bytes that all words may take, of what is known before they are counted.
     double mostBytes() const;
     PackedDeltas packAll();

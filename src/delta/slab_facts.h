@@ -21,6 +21,7 @@ struct SlabFacts {
 
     std::string file;                ///< that they were read from, for messages
     std::size_t blocksSeen = 0;      ///< as PreparedScene::Impl::blocksSeen of the slice axis
+    int joined = 1;                  ///< slices that are drawn as one
     int blocksPerSlab = 1;           ///< as SlabLayout::blocksPerSlab
     std::vector<PlannedSlab> slabs;  ///< in increasing order
     std::vector<Seen> seen;          ///< from the front on

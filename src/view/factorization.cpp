@@ -21,6 +21,7 @@
 #include "number_text.h"
 #include "portable_math.h"
 #include "view/affine.h"
+#include "view/joined_slants.h"
 
 namespace deltasplat {
 namespace {
@@ -412,20 +413,6 @@ Factorization subdividedFromEye(const Factorization& view, const Subdivision& pa
     return result;
 }
 
-// Where joined voxels are drawn, counted from the first of them: in the middle between the
-// outermost places of all.
-glm::dvec2 middleOfJoined(const glm::dvec2& shiftPerSlice, const Subdivision& parts) {
-    glm::dvec2 least(0.0);
-    glm::dvec2 most(0.0);
-    for (int i = 1; i < parts.joined; ++i) {
-        const glm::dvec2 place =
-            double(i) * shiftPerSlice - glm::dvec2(parts.slants[std::size_t(i)]);
-        least = glm::min(least, place);
-        most = glm::max(most, place);
-    }
-    return 0.5 * (least + most);
-}
-
 }  // namespace
 
 Factorization subdivided(const Factorization& view, const Subdivision& parts) {
@@ -438,8 +425,9 @@ Factorization subdivided(const Factorization& view, const Subdivision& parts) {
     result.pixelsPerVoxel /= within;
     // The first thin voxel lies before the middle of the one that it is a part of, on each axis; of
     // what is joined, the first voxel before the middle of all.
-    const glm::dvec2 alongSlices = parts.joined > 1 ? -middleOfJoined(view.shiftPerSlice, parts)
-                                                    : (0.5 - 0.5 / slices) * view.shiftPerSlice;
+    const glm::dvec2 alongSlices = parts.joined > 1
+                                       ? -middleOfJoined(view.shiftPerSlice, parts.joinedSlants())
+                                       : (0.5 - 0.5 / slices) * view.shiftPerSlice;
     const glm::dvec2 first = 0.5 * (within - 1) + within * alongSlices;
     const glm::dvec2 origin =
         glm::dvec2(parts.origin.y, parts.origin.z) + double(parts.origin.x) * view.shiftPerSlice;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <vector>
 
@@ -60,6 +61,17 @@ JoinedSlants joinedSlants(const glm::dvec2& shiftPerSlice, int count, int within
     }
     joined.farthest = 0.5 * glm::length(range);
     return joined;
+}
+
+glm::dvec2 middleOfJoined(const glm::dvec2& shiftPerSlice, std::span<const glm::ivec2> slants) {
+    glm::dvec2 least(0.0);
+    glm::dvec2 most(0.0);
+    for (std::size_t i = 1; i < slants.size(); ++i) {
+        const glm::dvec2 place = double(i) * shiftPerSlice - glm::dvec2(slants[i]);
+        least = glm::min(least, place);
+        most = glm::max(most, place);
+    }
+    return 0.5 * (least + most);
 }
 
 }  // namespace deltasplat

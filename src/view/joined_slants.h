@@ -3,10 +3,17 @@
 
 #include <array>
 #include <glm/vec2.hpp>
+#include <span>
 
 #include "deltasplat/view/factorization.h"
 
 namespace deltasplat {
+
+/// What becomes one.
+struct JoinedVoxels {
+    int slices = 1;
+    int within = 1;  ///< as Subdivision::joinedWithin
+};
 
 /// How slices are moved that become one, and by how much that moves them.
 struct JoinedSlants {
@@ -23,5 +30,10 @@ struct JoinedSlants {
 /// @param count          a power of two, kMostJoined at most
 /// @param within         as Subdivision::joinedWithin
 JoinedSlants joinedSlants(const glm::dvec2& shiftPerSlice, int count, int within = 1);
+
+/// Returns where joined voxels are drawn, counted from the first of them: in the middle between the
+/// outermost places of all.
+/// @param slants  as Subdivision::joinedSlants
+glm::dvec2 middleOfJoined(const glm::dvec2& shiftPerSlice, std::span<const glm::ivec2> slants);
 
 }  // namespace deltasplat

@@ -206,6 +206,52 @@ TEST_F(Joined, keepsThreadsAlongTheLineOfSightAsThin) {
     }
 }
 
+// What is a voxel thin and goes on along lines of sight is drawn slice by slice: joined, it would
+// be as much as a fifth too thin or too thick. What is thicker is joined.
+TEST_F(Joined, keepsWhatGoesOnAlongLinesOfSightAsDense) {
+    // Along the slices, every 16th voxel.
+    const auto rods = [](int thick) {
+        return test::makeVolume({{0, 0, 0}, {95, 95, 127}}, [=](int x, int y, int) {
+            return (x & 15) < thick && (y & 15) < thick ? 200 : test::kInactive;
+        });
+    };
+    // Every tenth voxel, tilted.
+    const auto plates = [](double slope) {
+        return test::makeVolume({{0, 0, 0}, {95, 95, 127}}, [=](int, int y, int z) {
+            const int place = y - int(std::floor(slope * z + 0.5));
+            return (place % 10 + 10) % 10 == 0 ? 200 : test::kInactive;
+        });
+    };
+    const auto expectAsDense = [](const Volume& volume, const RenderOptions& options) {
+        const RenderResult joined = render(volume, options);
+        const double ratio = sumOf(joined.image) / sumOf(unjoined(volume, options).image);
+        EXPECT_NEAR(ratio, 1, 0.03) << joined.stats.joined;
+        return joined.stats.joined;
+    };
+    const Volume thinRods = rods(1);
+    const Volume thickRods = rods(6);
+    for (const double pixels : {0.45, 0.1}) {
+        for (const double slope : {0.3, 0.497, 0.505, 0.7}) {
+            RenderOptions options = optionsFor(Colors::kOne, pixels, {slope, 0.36, 1});
+            options.mostJoined = kMostJoined;
+            // Squares of many slices are as dense by chance.
+            const int joined = expectAsDense(thinRods, options);
+            EXPECT_TRUE(joined == 1 || pixels < 0.2) << slope;
+            EXPECT_GT(expectAsDense(thickRods, options), 1) << slope;
+        }
+        for (const double slope : {0.25, 0.32, 0.46}) {
+            RenderOptions options = optionsFor(Colors::kOne, pixels, {0.214, slope, 1});
+            options.mostJoined = kMostJoined;
+            EXPECT_EQ(expectAsDense(plates(slope), options), 1) << slope;
+        }
+    }
+    // Seen straight, slices are where they are.
+    EXPECT_EQ(expectAsDense(thinRods, optionsFor(Colors::kOne, 0.45, {0, 0, 1})), 2);
+    const RenderOptions eye = fromEye(Colors::kOne, 0.2, {0.2, 0.3, 1}, 25);
+    EXPECT_EQ(expectAsDense(thinRods, eye), 1);
+    EXPECT_EQ(expectAsDense(thickRods, eye), 2);
+}
+
 // What is even, but for values that alternate, is not rounded to steps that can be seen.
 TEST_F(Joined, showsNoStepsInWhatIsEven) {
     const Volume volume = test::makeVolume({{0, 0, 0}, {127, 63, 127}},
@@ -396,8 +442,12 @@ TEST_F(Joined, straightViewsShowTheSame) {
                     if (pixels > 0.125) continue;
                     options.mostJoined = kMostJoined;
                     const RenderResult most = render(volume, options);
-                    EXPECT_EQ(most.stats.joined, 16);
-                    EXPECT_LT(largestDifference(most.image, expected.image), 4e-3)
+                    EXPECT_GE(most.stats.joined, 16);
+                    // Squares of noise are a little denser.
+                    EXPECT_LT(largestDifference(most.image, expected.image),
+                              most.stats.resolution < 1 ? 0.025 : 4e-3)
+                        << axis << ", " << sign;
+                    EXPECT_NEAR(sumOf(most.image) / sumOf(expected.image), 1, 0.02)
                         << axis << ", " << sign;
                 }
             }
