@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "join_judge.h"
 
-#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "delta/code_blocks.h"
@@ -16,8 +17,12 @@
 namespace deltasplat {
 namespace {
 
+using Lights = std::vector<glm::dvec4>;
+
 // Returns the lines of sight from an eye at a voxel (x, y, z), along the axis that they belong to.
-SightLines linesFrom(const glm::dvec3& eye, const glm::ivec3& voxel) {
+// @param lights  [axis]
+SightLines linesFrom(const glm::dvec3& eye, const glm::ivec3& voxel,
+                     const std::array<Lights, 3>& lights) {
     const glm::dvec3 along = glm::dvec3(voxel) - eye;
     const auto stepsAlong = [&](int axis) {
         const glm::ivec3 order = sliceOrder(axis);
@@ -31,31 +36,43 @@ SightLines linesFrom(const glm::dvec3& eye, const glm::ivec3& voxel) {
     const glm::dvec3 steps = stepsAlong(axis);
     // From within a voxel it is seen any way.
     const double slices = steps.x == 0 ? 1 : steps.x;
-    return {axis, slices > 0, glm::dvec2(-steps.y, -steps.z) / slices};
+    return {axis, slices > 0, glm::dvec2(-steps.y, -steps.z) / slices, lights[std::size_t(axis)]};
 }
 
-// Returns what lines of sight depend on, as bits.
-std::vector<std::uint64_t> bitsOfLines(const Factorization& view, const Volume& volume) {
-    std::vector<double> numbers{double(view.sliceAxis), double(view.frontToBack),
-                                stepsOf(view, volume)};
+// The axis that voxels are chosen along: from an eye always the same one, whichever regions a
+// picture shows.
+int axisOf(const Factorization& view, const Volume& volume) {
+    if (!view.eye) return view.sliceAxis;
+    for (int axis = 0; axis < 3; ++axis)
+        if (volume.codes->blocksAlong(axis)) return axis;
+    return 2;
+}
+
+// Returns all that lines of sight depend on, and what may become one, as bits.
+std::vector<std::uint64_t> keyOf(const Factorization& view, const Volume& volume,
+                                 const std::vector<JoinedVoxels>& some) {
+    std::vector<double> numbers;
     if (view.eye) {
-        numbers.insert(numbers.end(), {view.eye->x, view.eye->y, view.eye->z});
+        const glm::dvec3 eye = indexOfEye(view);
+        numbers = {eye.x, eye.y, eye.z};
     } else {
-        numbers.insert(numbers.end(), {view.shiftPerSlice.x, view.shiftPerSlice.y});
+        numbers = {double(view.sliceAxis), double(view.frontToBack), view.shiftPerSlice.x,
+                   view.shiftPerSlice.y, stepsOf(view, volume)};
     }
+    for (const JoinedVoxels& one : some)
+        numbers.insert(numbers.end(), {double(one.slices), double(one.within)});
     std::vector<std::uint64_t> bits;
     for (const double number : numbers) bits.push_back(std::bit_cast<std::uint64_t>(number));
     return bits;
 }
 
-// Whether a change may be seen. What looks like one on average may be chance, as long as it is
-// small.
+// Whether a change may be seen.
 bool isSeen(const JoinedChange& change) {
-    constexpr double kHardlyGained = 1.0 / 256;
     constexpr double kMostGained = 1.0 / 64;
-    constexpr double kMostRms = 1.0 / 16;
-    const double most = std::min(kMostGained, kHardlyGained + 2 * change.gainedError);
-    return std::abs(change.gained) > most || change.rms > kMostRms;
+    constexpr double kMostRms = 1.0 / 32;
+    for (int c = 0; c < 4; ++c)
+        if (std::abs(change.gained[c]) > kMostGained) return true;
+    return change.rms > kMostRms;
 }
 
 }  // namespace
@@ -67,37 +84,60 @@ JoinJudge::Axis::Axis(const PreparedScene::Impl& scene, int ofAxis)
       probe(listBlocks(*scene.scene.volume->codes, ofAxis, classes.classOfSlot()), ofAxis,
             classes.classOfSlot()) {}
 
-bool JoinJudge::mayBeSeen(const JoinedVoxels& joined, const PreparedScene::Impl& scene,
-                          const Factorization& view) const {
+JoinedVoxels JoinJudge::firstUnseen(const std::vector<JoinedVoxels>& some, const Axis& axis,
+                                    const Volume& volume, const Factorization& view) {
+    // Of each axis that lines of sight go along. From an eye the ways through slices are straight
+    // ones: others are up to 1.7 times as long, where voxels are cubes.
+    std::array<Lights, 3> lights;
+    const auto lightsAlong = [&](int sliceAxis, double steps) {
+        const double distance = planeDistance(volume.worldFromIndex, sliceAxis);
+        return lightsOf(axis.classes.atSteps(steps * distance / axis.classes.stepWorld));
+    };
+    JoinProbe::LinesThrough lines;
+    if (view.eye) {
+        for (int along = 0; along < 3; ++along) lights[std::size_t(along)] = lightsAlong(along, 1);
+        lines = [&, eye = indexOfEye(view)](const glm::ivec3& voxel) {
+            return linesFrom(eye, voxel, lights);
+        };
+    } else {
+        Lights& only = lights[std::size_t(view.sliceAxis)];
+        only = lightsAlong(view.sliceAxis, stepsOf(view, volume));
+        lines = [&](const glm::ivec3&) {
+            return SightLines{view.sliceAxis, view.frontToBack, view.shiftPerSlice, only};
+        };
+    }
+    for (const JoinedVoxels& joined : some) {
+        const std::optional<JoinedChange> change = axis.probe.change(joined, lines);
+        if (change && !isSeen(*change)) return joined;
+    }
+    return {};
+}
+
+JoinedVoxels JoinJudge::firstUnseen(const std::vector<JoinedVoxels>& some,
+                                    const PreparedScene::Impl& scene,
+                                    const Factorization& view) const {
     constexpr std::size_t kMostKnown = 256;
+    if (some.empty()) return {};
     const Volume& volume = *scene.scene.volume;
-    // Where only some slices are there, it was found out when all were.
+    // Where only some slices are there, as of parts of a picture, it was found out when all were.
     const SlotBlocks* const along = volume.codes->blocksAlong(view.sliceAxis);
-    if (along && along->facts()) return joined.slices > along->facts()->joined;
-    Key key = bitsOfLines(view, volume);
-    key.insert(key.end(), {std::uint64_t(joined.slices), std::uint64_t(joined.within)});
+    if (along && along->facts()) return {along->facts()->joined};
+    Key key = keyOf(view, volume, some);
     const std::lock_guard lock(mutex_);
     const auto known = known_.find(key);
     if (known != known_.end()) return known->second;
-    std::optional<JoinedChange> change;
+    JoinedVoxels unseen;
     isolated([&] {
-        if (!axis_ || axis_->sliceAxis != view.sliceAxis) axis_ = nullptr;
-        if (!axis_) axis_ = std::make_unique<const Axis>(scene, view.sliceAxis);
-        std::optional<glm::dvec3> eye;
-        if (view.eye) eye = indexOfEye(view);
-        const auto lines = [&](const glm::ivec3& voxel) {
-            if (eye) return linesFrom(*eye, voxel);
-            return SightLines{view.sliceAxis, view.frontToBack, view.shiftPerSlice};
-        };
-        const ClassTable seen = axis_->classes.atSteps(stepsOf(view, volume));
-        change = axis_->probe.change(joined, lines, lightsOf(seen));
+        const int axis = axisOf(view, volume);
+        if (!axis_ || axis_->sliceAxis != axis) axis_ = nullptr;
+        if (!axis_) axis_ = std::make_unique<const Axis>(scene, axis);
+        unseen = firstUnseen(some, *axis_, volume, view);
     });
-    const bool mayBe = !change || isSeen(*change);
     // Blocks will be listed again, of what is seen, when they are packed.
-    if (scene.isForOne && !mayBe) axis_ = nullptr;
+    if (scene.isForOne) axis_ = nullptr;
     if (known_.size() >= kMostKnown) known_.clear();
-    known_.emplace(std::move(key), mayBe);
-    return mayBe;
+    known_.emplace(std::move(key), unseen);
+    return unseen;
 }
 
 }  // namespace deltasplat

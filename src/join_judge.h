@@ -5,7 +5,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <vector>
 
 #include "delta/join_probe.h"
@@ -20,13 +19,12 @@ namespace deltasplat {
 /// one. Thread-safe.
 class JoinJudge {
   public:
-    /// Whether it may be seen: if light or opacity changes by more than a 64th on average, or by
-    /// more than a 16th from pixel to pixel (JoinedChange), or if that is not known. What is beside
-    /// the picture counts as well, so that parts of a picture are drawn alike, and nothing that was
-    /// asked before.
+    /// Returns the first of some that is known to change light and opacity little, on average and
+    /// from place to place (JoinedChange); else single voxels. Nothing but lines of sight counts,
+    /// neither a picture's frame nor what was asked before: so parts of a picture are drawn alike.
     /// @param view  of the volume's own voxels, the first of the picture's
-    bool mayBeSeen(const JoinedVoxels& joined, const PreparedScene::Impl& scene,
-                   const Factorization& view) const;
+    JoinedVoxels firstUnseen(const std::vector<JoinedVoxels>& some,
+                             const PreparedScene::Impl& scene, const Factorization& view) const;
 
   private:
     // What can be seen, in the order of one slice axis.
@@ -39,9 +37,12 @@ class JoinJudge {
     };
     using Key = std::vector<std::uint64_t>;
 
+    static JoinedVoxels firstUnseen(const std::vector<JoinedVoxels>& some, const Axis& axis,
+                                    const Volume& volume, const Factorization& view);
+
     mutable std::mutex mutex_;
     mutable std::unique_ptr<const Axis> axis_;  // that was asked for last
-    mutable std::map<Key, bool> known_;
+    mutable std::map<Key, JoinedVoxels> known_;
 };
 
 }  // namespace deltasplat

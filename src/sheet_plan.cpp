@@ -123,7 +123,7 @@ JoinedSlants slantsOf(const Factorization& view, int joined, int within) {
         slants.slants[1] = view.frontToBack ? -*view.slopeStep : *view.slopeStep;
         return slants;
     }
-    return joinedSlants(view.shiftPerSlice * (1 - kSnap), joined, within);
+    return joinedSlants(view.shiftPerSlice, joined, within);
 }
 
 // Whether so many slices may be joined, more than two: as far as so many voxels side by side cover
@@ -175,9 +175,7 @@ JoinedVoxels joinedUnasked(const PreparedScene::Impl& scene, const Camera& camer
     std::vector<JoinedVoxels> may;
     if (canBeMany) may = manyJoined(view, options.mostJoined);
     if (canBeMany || scene.canPairSlices()) may.push_back({2, 1});
-    for (const JoinedVoxels& joined : may)
-        if (!scene.joinJudge.mayBeSeen(joined, scene, view)) return joined;
-    return {};
+    return scene.joinJudge.firstUnseen(may, scene, view);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <limits>
 #include <random>
 #include <utility>
@@ -20,10 +19,9 @@
 namespace deltasplat {
 namespace {
 
-constexpr int kSlabsBeside = 16;  // before and behind what lines of sight are seen at
-constexpr int kTries = 8;         // to find each
-constexpr int kSquares = 4;       // of a patch, along u and along v, that voxels become
-constexpr int kMostLines = kSquares * kMostJoinedWithin;
+constexpr int kSlabsBeside = 16;         // before and behind what lines of sight are seen at
+constexpr int kTries = 64;               // to find each
+constexpr int kSquares = 5;              // of a patch, along u and along v, that voxels become
 constexpr double kOpaque = 1 - 0x1p-10;  // what is behind makes no difference
 
 // What the lines of a patch see, on average.
@@ -128,27 +126,36 @@ class JoinProbe::Layer {
     std::vector<const CodeBlock*> blocks_;
 };
 
-// Follows the lines of sight of one patch from the front on.
+// Follows the lines of sight of one patch from the front on: those of the base plane's pixels,
+// which lie a voxel from each other, and those of squares.
 class JoinProbe::Tracer {
   public:
-    // @param through  voxel (slice, u, v) that one of the lines passes
+    // @param through  voxel (slice, u, v) that the patch is laid around
     // @param part     where in the patch, 0 to 1 each
-    Tracer(const JoinProbe& probe, std::span<const glm::dvec4> lights, const SightLines& lines,
-           const JoinedVoxels& joined, const glm::ivec3& through, const glm::dvec2& part)
-        : lights_(lights),
-          lines_(lines),
+    Tracer(const JoinProbe& probe, const SightLines& lines, const JoinedVoxels& joined,
+           const glm::ivec3& through, const glm::dvec2& part)
+        : lines_(lines),
           joined_(joined),
-          count_(kSquares * joined.within),
           slants_(joinedSlants(lines.shiftPerSlice, joined.slices, joined.within).slants),
-          middle_(middleOfJoined(lines.shiftPerSlice,
-                                 std::span(slants_).first(std::size_t(joined.slices)))),
-          layer_(probe, lines.sliceAxis) {
+          layer_(probe, lines.sliceAxis),
+          single_(kSquares * joined.within),
+          squares_(kSquares + 1) {
         // What the voxel becomes a part of lies in the patch as well.
-        const double beside = joined.within;
-        const glm::dvec2 first = glm::dvec2(through.y, through.z) +
-                                 double(through.x) * lines.shiftPerSlice -
-                                 (beside + (count_ - 2 * beside) * part);
-        for (int i = 0; i < count_; ++i) linesAt_.push_back(first + (i + 0.5));
+        constexpr double kBeside = 1.5;
+        const glm::dvec2 base =
+            glm::dvec2(through.y, through.z) + double(through.x) * lines.shiftPerSlice;
+        const glm::dvec2 first =
+            base / double(joined.within) - (kBeside + (kSquares - 2 * kBeside) * part);
+        firstSquare_ = glm::ivec2(glm::floor(first + 0.5));
+        // Squares lie beside the patch by a part of one: at both ends some count in part.
+        const glm::dvec2 moved =
+            middleOfJoined(lines.shiftPerSlice,
+                           std::span(slants_).first(std::size_t(joined.slices))) /
+            double(joined.within);
+        for (int axis = 0; axis < 2; ++axis) {
+            squaresBefore_[axis] = moved[axis] > 0 ? 1 : 0;
+            partOfFirst_[axis] = moved[axis] > 0 ? moved[axis] : 1 + moved[axis];
+        }
         const auto ordered = [&](const glm::ivec3& at) {
             return toSliceOrder(fromSliceOrder(at, probe.sliceAxis_), lines.sliceAxis);
         };
@@ -164,25 +171,63 @@ class JoinProbe::Tracer {
         const int count = floorDiv(slices_.last, joined_.slices) - firstSlab + 1;
         for (int i = 0; i < count; ++i) {
             passSlab(firstSlab + (lines_.frontToBack ? i : count - 1 - i));
-            if (std::min(meanOf(single_).a, meanOf(joinedSeen_).a) > kOpaque) break;
+            if (std::min(meanOf(single_.seen).a, meanOfSquares().a) > kOpaque) break;
         }
-        return {meanOf(single_), meanOf(joinedSeen_)};
+        return {meanOf(single_.seen), meanOfSquares()};
     }
 
   private:
-    template <typename T>
-    using OfLines = std::array<std::array<T, kMostLines>, kMostLines>;
-    using OfSquare = std::array<glm::dvec4, kMostJoinedWithin * kMostJoinedWithin>;
+    using Lights = std::vector<glm::dvec4>;
 
-    glm::dvec4 meanOf(const OfLines<glm::dvec4>& lines) const {
+    // Lines beside each other, as far from each other as what they read.
+    struct Lines {
+        explicit Lines(int ofAxis)
+            : count(std::size_t(ofAxis)), sheet(pitch() * pitch()), seen(count * count) {}
+
+        std::size_t pitch() const { return count + 1; }
+        // Lets them pass a sheet, which they read between four places.
+        // @param part  of the way from one to the next
+        void pass(const glm::dvec2& part) {
+            for (std::size_t u = 0; u < count; ++u) {
+                for (std::size_t v = 0; v < count; ++v) {
+                    const glm::dvec4* const at = &sheet[u * pitch() + v];
+                    const glm::dvec4* const behind = at + pitch();
+                    const glm::dvec4 light =
+                        (1 - part.x) * ((1 - part.y) * at[0] + part.y * at[1]) +
+                        part.x * ((1 - part.y) * behind[0] + part.y * behind[1]);
+                    addBehind(light, seen[u * count + v]);
+                }
+            }
+        }
+
+        std::size_t count;  // along u and along v
+        Lights sheet;       // [u][v], one more than lines
+        Lights seen;        // [u][v]
+    };
+
+    static glm::dvec4 meanOf(std::span<const glm::dvec4> lights) {
         glm::dvec4 sum(0.0);
-        for (int u = 0; u < count_; ++u)
-            for (int v = 0; v < count_; ++v) sum += lines[u][v];
-        return sum / double(count_ * count_);
+        for (const glm::dvec4& light : lights) sum += light;
+        return sum / double(lights.size());
     }
 
-    // How far beside a line lies what is read for it.
-    int reach() const { return joined_.within + 1; }
+    // The same of the patch alone.
+    glm::dvec4 meanOfSquares() const {
+        const auto partOf = [&](std::size_t i, int axis) {
+            return i == 0 ? partOfFirst_[axis] : i == kSquares ? 1 - partOfFirst_[axis] : 1.0;
+        };
+        glm::dvec4 sum(0.0);
+        for (std::size_t u = 0; u < squares_.count; ++u)
+            for (std::size_t v = 0; v < squares_.count; ++v)
+                sum += partOf(u, 0) * partOf(v, 1) * squares_.seen[u * squares_.count + v];
+        return sum / double(kSquares * kSquares);
+    }
+
+    // Where the patch lies on the base plane.
+    glm::dvec2 firstLine() const { return glm::dvec2(joined_.within * firstSquare_); }
+    glm::dvec2 lastLine() const { return firstLine() + double(kSquares * joined_.within); }
+    // How far beside it lies what is read for it.
+    int reach() const { return 3 * joined_.within; }
 
     // Returns the slices in which lines pass voxels from `first` to `last`, (slice, u, v).
     Range slicesWithin(const glm::ivec3& first, const glm::ivec3& last) const {
@@ -190,8 +235,8 @@ class JoinProbe::Tracer {
         for (int axis = 0; axis < 2; ++axis) {
             const double shift = lines_.shiftPerSlice[axis];
             if (std::abs(shift) < 1e-9) continue;
-            const double to = (linesAt_.front()[axis] - (last[axis + 1] + reach())) / shift;
-            const double from = (linesAt_.back()[axis] - (first[axis + 1] - reach())) / shift;
+            const double to = (firstLine()[axis] - (last[axis + 1] + reach())) / shift;
+            const double from = (lastLine()[axis] - (first[axis + 1] - reach())) / shift;
             least = std::max(least, std::min(from, to));
             most = std::min(most, std::max(from, to));
         }
@@ -205,8 +250,8 @@ class JoinProbe::Tracer {
         number_ = number;
         const glm::dvec2 near = -double(8 * number) * lines_.shiftPerSlice;
         const glm::dvec2 far = -double(8 * number + 7) * lines_.shiftPerSlice;
-        const glm::ivec2 first(glm::floor(linesAt_.front() + glm::min(near, far)));
-        const glm::ivec2 last(glm::ceil(linesAt_.back() + glm::max(near, far)));
+        const glm::ivec2 first(glm::floor(firstLine() + glm::min(near, far)));
+        const glm::ivec2 last(glm::ceil(lastLine() + glm::max(near, far)));
         hasAny_ = layer_.find(number, first - reach(), last + reach());
         return hasAny_;
     }
@@ -220,89 +265,81 @@ class JoinProbe::Tracer {
             if (!hasAny) beginSquares(slab * joined_.slices);
             hasAny = true;
             passLines(slice);
-            passSquares(slice, slants_[std::size_t(of)]);
+            joinSlice(slice, slants_[std::size_t(of)]);
         }
-        if (hasAny) endSquares();
+        if (hasAny) passSquares();
+    }
+
+    glm::dvec4 lightOf(const glm::ivec3& voxel) const {
+        const ClassIndex seen = layer_.classOf(voxel);
+        return seen == 0 ? glm::dvec4(0.0) : lines_.lights[seen];
     }
 
     void passLines(int slice) {
-        std::array<glm::ivec2, kMostLines> at;
-        for (int i = 0; i < count_; ++i) at[i] = voxelAt(linesAt_[i], slice);
-        for (int u = 0; u < count_; ++u) {
-            for (int v = 0; v < count_; ++v) {
-                const ClassIndex seen = layer_.classOf({slice, at[u].x, at[v].y});
-                if (seen != 0) addBehind(lights_[seen], single_[u][v]);
+        const glm::dvec2 at = firstLine() - double(slice) * lines_.shiftPerSlice;
+        const glm::dvec2 whole = glm::floor(at);
+        const glm::ivec2 first(whole);
+        bool hasAny = false;
+        glm::dvec4* light = single_.sheet.data();
+        for (int u = 0; u < int(single_.pitch()); ++u) {
+            for (int v = 0; v < int(single_.pitch()); ++v, ++light) {
+                *light = lightOf({slice, first.x + u, first.y + v});
+                hasAny = hasAny || light->a > 0;
             }
         }
+        if (hasAny) single_.pass(at - whole);
     }
 
-    glm::ivec2 voxelAt(const glm::dvec2& line, int slice) const {
-        return glm::ivec2(glm::floor(line - double(slice) * lines_.shiftPerSlice + 0.5));
-    }
-
-    // Finds the squares of a slab that lines pass: of two that pass one, the first has it.
     void beginSquares(int firstSlice) {
-        for (int i = 0; i < count_; ++i) {
-            const glm::ivec2 voxel = voxelAt(linesAt_[i] - middle_, firstSlice);
-            for (int axis = 0; axis < 2; ++axis) {
-                squares_[i][axis] = floorDiv(voxel[axis], joined_.within) * joined_.within;
-                const bool isNew = i == 0 || squares_[i][axis] != squares_[i - 1][axis];
-                squareOf_[i][axis] = isNew ? i : squareOf_[i - 1][axis];
+        const glm::dvec2 at = glm::dvec2(firstSquare_ - squaresBefore_) -
+                              double(firstSlice) / joined_.within * lines_.shiftPerSlice;
+        const glm::dvec2 whole = glm::floor(at);
+        squaresAt_ = glm::ivec2(whole);
+        squaresPart_ = at - whole;
+        slab_.assign(squares_.sheet.size() * voxelsOfSquare(), glm::dvec4(0.0));
+    }
+
+    std::size_t voxelsOfSquare() const {
+        return std::size_t(joined_.within) * std::size_t(joined_.within);
+    }
+
+    // Puts a slice behind what becomes one with it.
+    void joinSlice(int slice, const glm::ivec2& slant) {
+        const int within = joined_.within;
+        const glm::ivec2 first = within * squaresAt_ - slant;
+        glm::dvec4* light = slab_.data();
+        for (int u = 0; u < int(squares_.pitch()); ++u) {
+            for (int v = 0; v < int(squares_.pitch()); ++v) {
+                const glm::ivec2 square = first + within * glm::ivec2(u, v);
+                for (int i = 0; i < within; ++i)
+                    for (int k = 0; k < within; ++k)
+                        addBehind(lightOf({slice, square + glm::ivec2(i, k)}), *light++);
             }
         }
-        for (auto& row : slab_)
-            for (OfSquare& square : row) square.fill(glm::dvec4(0.0));
     }
 
-    template <typename Use>
-    void forSquares(const Use& use) {
-        for (int u = 0; u < count_; ++u) {
-            if (squareOf_[u].x != u) continue;
-            for (int v = 0; v < count_; ++v)
-                if (squareOf_[v].y == v) use(u, v);
-        }
+    void passSquares() {
+        const std::size_t voxels = voxelsOfSquare();
+        for (std::size_t i = 0; i < squares_.sheet.size(); ++i)
+            squares_.sheet[i] = meanOf(std::span(slab_).subspan(i * voxels, voxels));
+        squares_.pass(squaresPart_);
     }
 
-    void passSquares(int slice, const glm::ivec2& slant) {
-        forSquares([&](int u, int v) {
-            const glm::ivec2 first = glm::ivec2(squares_[u].x, squares_[v].y) - slant;
-            for (int i = 0; i < joined_.within * joined_.within; ++i) {
-                const glm::ivec2 beside(i / joined_.within, i % joined_.within);
-                const ClassIndex seen = layer_.classOf({slice, first + beside});
-                if (seen != 0) addBehind(lights_[seen], slab_[u][v][std::size_t(i)]);
-            }
-        });
-    }
-
-    void endSquares() {
-        OfLines<glm::dvec4> means;
-        forSquares([&](int u, int v) {
-            glm::dvec4 sum(0.0);
-            for (const glm::dvec4& light : slab_[u][v]) sum += light;
-            means[u][v] = sum / double(joined_.within * joined_.within);
-        });
-        for (int u = 0; u < count_; ++u)
-            for (int v = 0; v < count_; ++v)
-                addBehind(means[squareOf_[u].x][squareOf_[v].y], joinedSeen_[u][v]);
-    }
-
-    std::span<const glm::dvec4> lights_;
     SightLines lines_;
     JoinedVoxels joined_;
-    int count_;  // of lines along u and along v, a voxel from each other
     std::array<glm::ivec2, kMostJoined> slants_;
-    glm::dvec2 middle_;
     Layer layer_;
+    glm::ivec2 firstSquare_{0};  // of the base plane
+    glm::ivec2 squaresBefore_{0};
+    glm::dvec2 partOfFirst_{0.0};  // of squares that lies in the patch, along u and v
     Range slices_{0, 0};
-    std::vector<glm::dvec2> linesAt_;  // on the base plane
-    int number_ = std::numeric_limits<int>::min();
+    int number_ = std::numeric_limits<int>::min();  // of the layer
     bool hasAny_ = false;
-    OfLines<glm::dvec4> single_{};
-    OfLines<glm::dvec4> joinedSeen_{};
-    std::array<glm::ivec2, kMostLines> squares_{};  // first voxel of those of a slab
-    std::array<glm::ivec2, kMostLines>
-        squareOf_{};  // the first line that passes the same, along u, v
-    OfLines<OfSquare> slab_{};
+    Lines single_;
+    Lines squares_;
+    glm::ivec2 squaresAt_{0};  // the first that is read of a slab
+    glm::dvec2 squaresPart_{0.0};
+    Lights slab_;  // of each voxel of each square
 };
 
 JoinProbe::JoinProbe(std::vector<CodeBlock> blocks, int sliceAxis,
@@ -337,12 +374,11 @@ const CodeBlock* JoinProbe::find(const glm::ivec3& position) const {
     return block != column.end() && block->position.x == position.x ? &*block : nullptr;
 }
 
-std::optional<JoinedChange> JoinProbe::change(const JoinedVoxels& joined, const LinesThrough& lines,
-                                              std::span<const glm::dvec4> lights) const {
+std::optional<JoinedChange> JoinProbe::change(const JoinedVoxels& joined,
+                                              const LinesThrough& lines) const {
     if (blocks_.empty()) return {};
     const ClassReader classes(classOfSlot_, nullptr, sliceAxis_);
-    // As many lines of sight of large patches as of small ones would take as much longer.
-    const std::size_t count = joined.within < 4 ? 192 : 64;
+    const std::size_t count = joined.within == 1 ? 128 : joined.within == 2 ? 96 : 48;
     std::vector<std::optional<Seen>> patches(count);
     parallelFor(count, [&](std::size_t i) {
         // From every part of the volume as many as it has blocks.
@@ -355,10 +391,9 @@ std::optional<JoinedChange> JoinProbe::change(const JoinedVoxels& joined, const 
             if (!voxel) continue;
             const glm::ivec3 xyz = fromSliceOrder(*voxel, sliceAxis_);
             const SightLines seenBy = lines(xyz);
-            const glm::dvec2 within(part(), part());
+            const glm::dvec2 within{part(), part()};  // in this order
             patches[i] =
-                Tracer(*this, lights, seenBy, joined, toSliceOrder(xyz, seenBy.sliceAxis), within)
-                    .trace();
+                Tracer(*this, seenBy, joined, toSliceOrder(xyz, seenBy.sliceAxis), within).trace();
         }
     });
     glm::dvec4 gained(0.0);
@@ -378,13 +413,7 @@ std::optional<JoinedChange> JoinProbe::change(const JoinedVoxels& joined, const 
     // Of too few, nothing is known.
     if (4 * found < double(count) || !(most > 0)) return {};
     JoinedChange result;
-    for (int c = 0; c < 4; ++c) {
-        const double share = gained[c] / largestOf(seen);
-        if (std::abs(share) <= std::abs(result.gained)) continue;
-        result.gained = share;
-        const double ofMean = std::max(0.0, squared[c] - gained[c] * gained[c] / found);
-        result.gainedError = std::sqrt(ofMean) / largestOf(seen);
-    }
+    result.gained = gained / largestOf(seen);
     result.rms = std::sqrt(largestOf(squared) / found) / most;
     return result;
 }

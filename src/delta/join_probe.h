@@ -21,22 +21,21 @@ struct SightLines {
     int sliceAxis;
     bool frontToBack;          ///< as Factorization
     glm::dvec2 shiftPerSlice;  ///< as Factorization
+    /// Of each class, over a slice: premultiplied RGBA.
+    std::span<const glm::dvec4> lights;
 };
 
-/// What becomes of light and opacity where slices, and voxels beside each other, become one: of the
-/// channel of premultiplied RGBA that changes most.
+/// What becomes of light and opacity where slices, and voxels beside each other, become one.
 struct JoinedChange {
-    /// By how much more of it there is on average, as a share of the largest channel; below 0:
+    /// By how much more of each channel there is on average, as a share of the largest; below 0:
     /// less.
-    double gained = 0;
-    /// The standard error of this estimate.
-    double gainedError = 0;
-    /// The root of the mean square of what pixels gain or lose, likewise of the largest channel
-    /// that any of them has.
+    glm::dvec4 gained{0.0};
+    /// The root of the mean square of what patches gain or lose, of the channel that changes most,
+    /// as a share of the largest channel that any of them has.
     double rms = 0;
 };
 
-/// Finds out what joining does to what a picture shows, by some hundred of its pixels: what lines
+/// Finds out what joining does to what pictures show, by some hundred patches of them: what lines
 /// of sight see of single voxels, and of what these become. It does little to most things. What is
 /// a voxel thin and goes on along lines of sight gets wider where slices lie beside each other that
 /// become one, or narrower.
@@ -50,10 +49,8 @@ class JoinProbe {
     using LinesThrough = std::function<SightLines(const glm::ivec3& voxel)>;
 
     /// Deterministic; multi-threaded.
-    /// @param lights  of each class, over a slice: premultiplied RGBA
     /// @return empty: too little is seen to know
-    std::optional<JoinedChange> change(const JoinedVoxels& joined, const LinesThrough& lines,
-                                       std::span<const glm::dvec4> lights) const;
+    std::optional<JoinedChange> change(const JoinedVoxels& joined, const LinesThrough& lines) const;
 
   private:
     class Tracer;

@@ -11,6 +11,8 @@
 namespace deltasplat {
 namespace {
 
+// What a turning camera rounds must not decide.
+constexpr double kSnap = 1e-9;
 // What rounding may have done to a sum of a few shifts.
 constexpr double kSame = 1e-12;
 
@@ -41,7 +43,8 @@ JoinedSlants joinedSlants(const glm::dvec2& shiftPerSlice, int count, int within
     JoinedSlants joined;
     glm::dvec2 range(0.0);
     for (int axis = 0; axis < 2; ++axis) {
-        const double shift = std::abs(shiftPerSlice[axis]);
+        const double whole = std::abs(shiftPerSlice[axis]);
+        const double shift = whole * (1 - kSnap);
         const double begin = beginOfShortest(shift, count);
         const auto wholeOf = [&](int i) { return int(std::floor(i * shift - begin + kSame)); };
         double least = 0;
@@ -49,8 +52,8 @@ JoinedSlants joinedSlants(const glm::dvec2& shiftPerSlice, int count, int within
         for (int i = 1; i < count; ++i) {
             const int slant = wholeOf(i) - wholeOf(0);
             joined.slants[std::size_t(i)][axis] = shiftPerSlice[axis] < 0 ? -slant : slant;
-            least = std::min(least, i * shift - slant);
-            most = std::max(most, i * shift - slant);
+            least = std::min(least, i * whole - slant);
+            most = std::max(most, i * whole - slant);
         }
         range[axis] = most - least;
         // Else what lies beside a joined voxel is seen through its reading alone, which takes the

@@ -218,7 +218,7 @@ TEST_F(Joined, keepsWhatGoesOnAlongLinesOfSightAsDense) {
     // Every tenth voxel, tilted.
     const auto plates = [](double slope) {
         return test::makeVolume({{0, 0, 0}, {95, 95, 127}}, [=](int, int y, int z) {
-            const int place = y - int(std::floor(slope * z + 0.5));
+            const int place = y - int(std::ceil(slope * z));
             return (place % 10 + 10) % 10 == 0 ? 200 : test::kInactive;
         });
     };
@@ -230,26 +230,79 @@ TEST_F(Joined, keepsWhatGoesOnAlongLinesOfSightAsDense) {
     };
     const Volume thinRods = rods(1);
     const Volume thickRods = rods(6);
-    for (const double pixels : {0.45, 0.1}) {
-        for (const double slope : {0.3, 0.497, 0.505, 0.7}) {
+    for (const double slope : {0.3, 0.497, 0.505, 0.7}) {
+        for (const double pixels : {0.45, 0.1}) {
             RenderOptions options = optionsFor(Colors::kOne, pixels, {slope, 0.36, 1});
             options.mostJoined = kMostJoined;
-            // Squares of many slices are as dense by chance.
-            const int joined = expectAsDense(thinRods, options);
-            EXPECT_TRUE(joined == 1 || pixels < 0.2) << slope;
+            expectAsDense(thinRods, options);
             EXPECT_GT(expectAsDense(thickRods, options), 1) << slope;
+            options.mostJoined = 2;
+            EXPECT_EQ(expectAsDense(thinRods, options), 1) << slope;
         }
+    }
+    for (const double pixels : {0.45, 0.1}) {
         for (const double slope : {0.25, 0.32, 0.46}) {
             RenderOptions options = optionsFor(Colors::kOne, pixels, {0.214, slope, 1});
             options.mostJoined = kMostJoined;
-            EXPECT_EQ(expectAsDense(plates(slope), options), 1) << slope;
+            expectAsDense(plates(slope), options);
         }
+    }
+    RenderOptions edgeOn = optionsFor(Colors::kOne, 0.45, {0.214, 0.32, 1});
+    for (const int most : {2, 8, kMostJoined}) {
+        edgeOn.mostJoined = most;
+        EXPECT_EQ(expectAsDense(plates(0.32), edgeOn), 1) << most;
     }
     // Seen straight, slices are where they are.
     EXPECT_EQ(expectAsDense(thinRods, optionsFor(Colors::kOne, 0.45, {0, 0, 1})), 2);
-    const RenderOptions eye = fromEye(Colors::kOne, 0.2, {0.2, 0.3, 1}, 25);
-    EXPECT_EQ(expectAsDense(thinRods, eye), 1);
-    EXPECT_EQ(expectAsDense(thickRods, eye), 2);
+}
+
+// From an eye lines of sight have slopes of their own, along whatever axis they go.
+TEST_F(Joined, keepsWhatRecedesFromAnEyeAsDense) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto rods = [&](int thick) {
+            glm::ivec3 last(95);
+            last[axis] = 127;
+            const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+            return test::makeVolume({{0, 0, 0}, last}, [=](int x, int y, int z) {
+                const glm::ivec3 at(x, y, z);
+                return (at[u] & 15) < thick && (at[v] & 15) < thick ? 200 : test::kInactive;
+            });
+        };
+        const Volume thinRods = rods(1);
+        const Volume thickRods = rods(6);
+        for (const double sign : {-1.0, 1.0}) {
+            glm::dvec3 direction(0.0);
+            direction[axis] = sign;
+            direction[(axis + 1) % 3] = 0.45;
+            direction[(axis + 2) % 3] = -0.35;
+            const RenderOptions options = fromEye(Colors::kOne, 0.2, direction, 25);
+            const RenderResult thin = render(thinRods, options);
+            EXPECT_EQ(thin.stats.joined, 1) << axis << ' ' << sign;
+            const RenderResult thick = render(thickRods, options);
+            EXPECT_EQ(thick.stats.joined, 2) << axis << ' ' << sign;
+            EXPECT_NEAR(sumOf(thick.image) / sumOf(unjoined(thickRods, options).image), 1, 0.01);
+            // Across the rods nothing goes on.
+            glm::dvec3 across(0.0);
+            across[(axis + 1) % 3] = sign;
+            across[axis] = 0.4;
+            across[(axis + 2) % 3] = 0.3;
+            EXPECT_EQ(render(thinRods, fromEye(Colors::kOne, 0.2, across, 25)).stats.joined, 2)
+                << axis << ' ' << sign;
+        }
+    }
+}
+
+// Pixels around the frame change nothing of it, though they may show lines of sight along another
+// axis.
+TEST_F(Joined, overscanChangesNothing) {
+    const Volume volume = test::randomVolume(kBox, 5, 0.5, {0.5, 0.5, 4});
+    RenderOptions options = fromEye(Colors::kOne, 0.4, {1, 0.2, 0.1}, 60);
+    options.camera.distanceWorld = 150;
+    const int joined = render(volume, options).stats.joined;
+    for (const int pixels : {8, 64, 200}) {
+        options.camera.overscanPixels = glm::ivec2(pixels);
+        EXPECT_EQ(render(volume, options).stats.joined, joined) << pixels;
+    }
 }
 
 // What is even, but for values that alternate, is not rounded to steps that can be seen.
