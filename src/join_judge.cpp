@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "join_judge.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -39,13 +40,10 @@ SightLines linesFrom(const glm::dvec3& eye, const glm::ivec3& voxel,
     return {axis, slices > 0, glm::dvec2(-steps.y, -steps.z) / slices, lights[std::size_t(axis)]};
 }
 
-// The axis that voxels are chosen along: from an eye always the same one, whichever regions a
-// picture shows.
-int axisOf(const Factorization& view, const Volume& volume) {
-    if (!view.eye) return view.sliceAxis;
-    for (int axis = 0; axis < 3; ++axis)
-        if (volume.codes->blocksAlong(axis)) return axis;
-    return 2;
+// The axis that voxels are chosen along: from an eye the same one, whichever regions a picture
+// shows and however the volume is stored.
+int axisOf(const Factorization& view) {
+    return view.eye ? 2 : view.sliceAxis;
 }
 
 // Returns all that lines of sight depend on, and what may become one, as bits.
@@ -121,14 +119,19 @@ JoinedVoxels JoinJudge::firstUnseen(const std::vector<JoinedVoxels>& some,
     const Volume& volume = *scene.scene.volume;
     // Where only some slices are there, as of parts of a picture, it was found out when all were.
     const SlotBlocks* const along = volume.codes->blocksAlong(view.sliceAxis);
-    if (along && along->facts()) return {along->facts()->joined};
+    if (along && along->facts()) {
+        const auto known = std::find_if(some.begin(), some.end(), [&](const JoinedVoxels& one) {
+            return one.slices == along->facts()->joined;
+        });
+        return known != some.end() ? *known : JoinedVoxels();
+    }
     Key key = keyOf(view, volume, some);
     const std::lock_guard lock(mutex_);
     const auto known = known_.find(key);
     if (known != known_.end()) return known->second;
     JoinedVoxels unseen;
     isolated([&] {
-        const int axis = axisOf(view, volume);
+        const int axis = axisOf(view);
         if (!axis_ || axis_->sliceAxis != axis) axis_ = nullptr;
         if (!axis_) axis_ = std::make_unique<const Axis>(scene, axis);
         unseen = firstUnseen(some, *axis_, volume, view);

@@ -114,6 +114,8 @@ SlabFacts factsOf(const Json& json, const std::filesystem::path& file) {
     facts.words = wholeNumberOf<std::uint64_t>(json.at("words"));
     facts.content = json.at("content").get<std::string>();
     if (facts.blocksPerSlab < 1) throw Error(ErrorCode::kInput, "slabs of nothing");
+    if (facts.joined != 1 && facts.joined != 2)
+        throw Error(ErrorCode::kInput, "slices that parts cannot join");
     return facts;
 }
 

@@ -146,7 +146,7 @@ class JoinProbe::Tracer {
             glm::dvec2(through.y, through.z) + double(through.x) * lines.shiftPerSlice;
         const glm::dvec2 first =
             base / double(joined.within) - (kBeside + (kSquares - 2 * kBeside) * part);
-        firstSquare_ = glm::ivec2(glm::floor(first + 0.5));
+        firstSquare_ = glm::floor(first + 0.5);
         // Squares lie beside the patch by a part of one: at both ends some count in part.
         const glm::dvec2 moved =
             middleOfJoined(lines.shiftPerSlice,
@@ -224,7 +224,7 @@ class JoinProbe::Tracer {
     }
 
     // Where the patch lies on the base plane.
-    glm::dvec2 firstLine() const { return glm::dvec2(joined_.within * firstSquare_); }
+    glm::dvec2 firstLine() const { return double(joined_.within) * firstSquare_; }
     glm::dvec2 lastLine() const { return firstLine() + double(kSquares * joined_.within); }
     // How far beside it lies what is read for it.
     int reach() const { return 3 * joined_.within; }
@@ -291,7 +291,7 @@ class JoinProbe::Tracer {
     }
 
     void beginSquares(int firstSlice) {
-        const glm::dvec2 at = glm::dvec2(firstSquare_ - squaresBefore_) -
+        const glm::dvec2 at = firstSquare_ - squaresBefore_ -
                               double(firstSlice) / joined_.within * lines_.shiftPerSlice;
         const glm::dvec2 whole = glm::floor(at);
         squaresAt_ = glm::ivec2(whole);
@@ -329,8 +329,8 @@ class JoinProbe::Tracer {
     JoinedVoxels joined_;
     std::array<glm::ivec2, kMostJoined> slants_;
     Layer layer_;
-    glm::ivec2 firstSquare_{0};  // of the base plane
-    glm::ivec2 squaresBefore_{0};
+    glm::dvec2 firstSquare_{0.0};  // of the base plane: a whole number
+    glm::dvec2 squaresBefore_{0.0};
     glm::dvec2 partOfFirst_{0.0};  // of squares that lies in the patch, along u and v
     Range slices_{0, 0};
     int number_ = std::numeric_limits<int>::min();  // of the layer

@@ -269,6 +269,24 @@ void claimFactsOf(const std::string& file) {
     testing::writeBytes(kFacts, json.dump());
 }
 
+// Parts join two slices or none, whatever a file says.
+TEST(SlabFacts, ClaimedNumbersOfJoinedSlicesDoNoHarm) {
+    const TempFolder folder;
+    writeDeltas(2, 16);
+    writeFacts({}, cameraOf("front"));
+    nlohmann::ordered_json json = nlohmann::ordered_json::parse(std::ifstream(kFacts));
+    for (const int joined : {-1, 0, 3, 4, 64}) {
+        json.front()["facts"]["joined"] = joined;
+        json["sum"] = hashOf(json.front().dump());
+        testing::writeBytes(kFacts, json.dump());
+        testing::expectError(ErrorCode::kInput,
+                             "facts.json: got something else; expected facts of a picture's slabs",
+                             [] {
+                                 readPart({1, 1, 2});
+                             });
+    }
+}
+
 // OpenVDB's note of how long leaves are comes from the file as everything else: it may be wrong,
 // and is packed by Blosc, which believes what it says of itself.
 TEST(SlabFacts, DamagedNotesOfLeavesDoNoHarm) {

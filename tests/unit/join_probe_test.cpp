@@ -190,7 +190,8 @@ TEST(JoinProbe, isTheSameFarAway) {
         const JoinedChange expected = changeAt(glm::ivec3(0), joined);
         EXPECT_GT(expected.rms, 0.01);
         for (const glm::ivec3& place :
-             {glm::ivec3(1 << 29), glm::ivec3(-(1 << 29)), glm::ivec3(1 << 29, -(1 << 29), 64)}) {
+             {glm::ivec3(1 << 29), glm::ivec3(64 - (1 << 30)), glm::ivec3((1 << 30) - 128),
+              glm::ivec3(1 << 29, -(1 << 29), 64)}) {
             const JoinedChange change = changeAt(place, joined);
             EXPECT_NEAR(change.rms, expected.rms, 1e-6);
             EXPECT_NEAR(gainedBy(change), gainedBy(expected), 1e-6);
