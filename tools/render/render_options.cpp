@@ -379,7 +379,8 @@ void addSplattingOptions(CLI::App& app, PictureOptions& picture) {
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
                        ", or 1/2, 1/4 or 1/8:\nvoxels share a pixel, which is softer, not faster, "
                        "and denser\nwhere thin and opaque things lie along the line of sight\n"
-                       "(default: 1 or 2, chosen from the screen)");
+                       "(default: 1 or 2, chosen from the screen; 1/2 or 1/4 where\nvoxels "
+                       "beside each other are joined)");
     group.addValue("--filter", "NAME", options.filter, pictureFilter(),
                    withDefault("What makes pixels of the rendered plane: catmull-rom (sharp),\n"
                                "mitchell, gauss (soft) or box (the mean over a pixel)",
