@@ -14,6 +14,7 @@
 #include "parallel.h"
 #include "picture_view.h"
 #include "prepared_axis.h"
+#include "view/most_parallel.h"
 
 namespace deltasplat {
 namespace {
@@ -25,16 +26,9 @@ using Lights = std::vector<glm::dvec4>;
 SightLines linesFrom(const glm::dvec3& eye, const glm::ivec3& voxel,
                      const std::array<Lights, 3>& lights) {
     const glm::dvec3 along = glm::dvec3(voxel) - eye;
-    const auto stepsAlong = [&](int axis) {
-        const glm::ivec3 order = sliceOrder(axis);
-        return glm::dvec3(along[order[0]], along[order[1]], along[order[2]]);
-    };
-    int axis = 2;
-    for (; axis > 0; --axis) {
-        const glm::dvec3 steps = stepsAlong(axis);
-        if (belongs({std::abs(steps.x), steps.y, steps.z}, sliceOrder(axis))) break;
-    }
-    const glm::dvec3 steps = stepsAlong(axis);
+    const int axis = mostParallelAxis(along);
+    const glm::ivec3 order = sliceOrder(axis);
+    const glm::dvec3 steps(along[order[0]], along[order[1]], along[order[2]]);
     // From within a voxel it is seen any way.
     const double slices = steps.x == 0 ? 1 : steps.x;
     return {axis, slices > 0, glm::dvec2(-steps.y, -steps.z) / slices, lights[std::size_t(axis)]};

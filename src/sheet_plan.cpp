@@ -13,12 +13,10 @@
 #include "dims_text.h"
 #include "number_text.h"
 #include "view/joined_slants.h"
+#include "view/most_parallel.h"
 
 namespace deltasplat {
 namespace {
-
-// What a turning camera rounds must not decide.
-constexpr double kSnap = 1e-9;
 
 // Where voxels cover fewer pixels of the screen, one sheet pixel for each and its footprint, which
 // grows slowly (defaultSigma), take a fraction of the time of two and theirs, and blur as little.

@@ -22,24 +22,13 @@
 #include "portable_math.h"
 #include "view/affine.h"
 #include "view/joined_slants.h"
+#include "view/most_parallel.h"
 
 namespace deltasplat {
 namespace {
 
-// Directions this close are the same: rounding in a transform or an angle must neither choose the
-// axis of a diagonal view nor tilt a straight one.
-constexpr double kSnap = 1e-9;
 // Beyond, footprints are so wide (defaultSigma) that more sheet pixels would show nothing else.
 constexpr int kMaxAutomaticResolution = 2;
-
-int mostParallelAxis(const glm::dvec3& direction) {
-    const glm::dvec3 along = glm::abs(direction);
-    const double largest = std::max({along.x, along.y, along.z});
-    for (int axis = 2; axis > 0; --axis) {
-        if (along[axis] >= largest * (1 - kSnap)) return axis;
-    }
-    return 0;
-}
 
 // Columns of a matrix in the order of slices, the first away from the camera.
 glm::dmat3 stepsOf(const glm::dmat3& linear, const glm::ivec3& order, bool frontToBack) {

@@ -8,11 +8,11 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "view/most_parallel.h"
+
 namespace deltasplat {
 namespace {
 
-// What a turning camera rounds must not decide.
-constexpr double kSnap = 1e-9;
 // What rounding may have done to a sum of a few shifts.
 constexpr double kSame = 1e-12;
 
