@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <string>
 #include <utility>
 
 #include "deltasplat/error.h"
@@ -15,6 +16,17 @@
 #include "memory.h"
 #include "parallel.h"
 #include "parallel_sort.h"
+
+template <>
+std::string openvdb::tree::LeafNode<deltasplat::Code, 3>::str() const {
+    return "a leaf of codes";
+}
+template class openvdb::tree::LeafNode<deltasplat::Code, 3>;
+template class openvdb::tree::InternalNode<openvdb::tree::LeafNode<deltasplat::Code, 3>, 4>;
+template class openvdb::tree::InternalNode<
+    openvdb::tree::InternalNode<openvdb::tree::LeafNode<deltasplat::Code, 3>, 4>, 5>;
+template class openvdb::tree::Tree<openvdb::tree::RootNode<openvdb::tree::InternalNode<
+    openvdb::tree::InternalNode<openvdb::tree::LeafNode<deltasplat::Code, 3>, 4>, 5>>>;
 
 namespace deltasplat {
 

@@ -7,10 +7,23 @@
 #include <memory>
 #include <mutex>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "deltasplat/ingest/volume.h"
+
+// The code of the tree's nodes is generated once, in code_tree.cpp: it takes longer to compile than
+// all else in a file that uses codes. The root stays out, because a member of OpenVDB 10's that
+// nobody calls does not compile; such a member of the leaf's is replaced.
+template <>
+std::string openvdb::tree::LeafNode<deltasplat::Code, 3>::str() const;
+extern template class openvdb::tree::LeafNode<deltasplat::Code, 3>;
+extern template class openvdb::tree::InternalNode<openvdb::tree::LeafNode<deltasplat::Code, 3>, 4>;
+extern template class openvdb::tree::InternalNode<
+    openvdb::tree::InternalNode<openvdb::tree::LeafNode<deltasplat::Code, 3>, 4>, 5>;
+extern template class openvdb::tree::Tree<openvdb::tree::RootNode<openvdb::tree::InternalNode<
+    openvdb::tree::InternalNode<openvdb::tree::LeafNode<deltasplat::Code, 3>, 4>, 5>>>;
 
 namespace deltasplat {
 
