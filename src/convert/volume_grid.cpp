@@ -92,6 +92,7 @@ VdbMetadata metadataOf(const Volume& volume) {
         metadata.insert(kBoxMaxKey, volume.box.max);
     }
     if (!volume.space.empty()) metadata.insert(kSpaceKey, volume.space);
+    if (!volume.lengthUnit.empty()) metadata.insert(kLengthUnitKey, volume.lengthUnit);
     return metadata;
 }
 

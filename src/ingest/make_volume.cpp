@@ -13,6 +13,7 @@
 #include "ingest/placement.h"
 #include "ingest/readers.h"
 #include "ingest/values/value_cast.h"
+#include "length_unit.h"
 #include "memory.h"
 #include "number_text.h"
 
@@ -94,6 +95,8 @@ void checkLayout(const MemoryLayout& layout) {
         refuse("background", numberText(*layout.background), "a finite number or NaN");
     if (layout.space != "" && layout.space != "RAS" && layout.space != "LPS")
         refuse("space", "\"" + layout.space + "\"", "RAS, LPS or nothing");
+    if (lengthUnitNamed(layout.lengthUnit) != layout.lengthUnit)
+        refuse("lengthUnit", "\"" + layout.lengthUnit + "\"", "km, m, mm, um, nm or nothing");
 }
 
 // Of whole numbers a background that is none, or beyond them, could be no voxel's.
@@ -167,6 +170,7 @@ Volume makeVolume(std::span<const T> values, const MemoryLayout& layout, const R
     source.bigEndian = std::endian::native == std::endian::big;
     source.worldFromIndex = layout.worldFromIndex;
     source.space = layout.space;
+    source.lengthUnit = layout.lengthUnit;
     source.forEachLayer = LayerGiver<T>(values, layout.dims, strides);
     return layout.background ? readSparse(source, *layout.background, options, listener)
                              : readDense(source, options, listener);

@@ -25,7 +25,8 @@ struct MemoryLayout {
     /// active in a .vdb; NaN: those that are NaN. Empty: all voxels are there, as in a .raw file.
     std::optional<double> background = {};
     std::string name = "volume";
-    std::string space = {};  ///< as Volume::space
+    std::string space = {};       ///< as Volume::space
+    std::string lengthUnit = {};  ///< as Volume::lengthUnit
 };
 
 /// Makes a volume of values in memory, which are copied: what readVolume would make of a file of

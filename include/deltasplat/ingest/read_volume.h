@@ -38,7 +38,8 @@ struct ReadOptions {
     RawFormat raw;                   ///< .raw: what the bytes are
     /// NIfTI and .npy of more than three axes: which of their volumes, from 0 on; the fourth axis
     /// counts fastest (of a C-ordered .npy the one before the last three). Empty: there has to be
-    /// one. Other formats pay no heed to it.
+    /// one. Of a segmentation of 3D Slicer in layers: which layer; empty: all of them, a voxel
+    /// having the label that Slicer shows on top. Other formats pay no heed to it.
     std::optional<std::int64_t> volume;
     /// DICOM: the UID of the series to read. Empty: there has to be one. Other formats pay no heed
     /// to it.
@@ -71,8 +72,9 @@ struct ReadOptions {
     double bytesPerInexactBlock = 0;  ///< besides, if codes are not exact; twice of 8-byte values
 };
 
-/// Reads one scalar volume: `.vdb .raw .raw.gz .npy .nii .nii.gz .nrrd .nhdr .mhd .mha .dcm` and
-/// images (`.tif .png .jpg .bmp .pgm .exr`, of which pages are slices) by extension, in any case; a
+/// Reads one scalar volume: `.vdb .raw .npy .nii .hdr .nrrd .nhdr .mhd .mha .dcm` and images
+/// (`.tif .png .jpg .bmp .pgm .exr`, of which pages are slices) by extension, in any case, all but
+/// DICOM and images also under gzip, which is found by content (.raw, .raw.gz: by name); a
 /// folder of DICOM slices or of images; a stack `slice.####.png` or `slice.%04d.png`. NRRD,
 /// MetaImage and DICOM need a build with ITK. What is passed over is said in a warning.
 /// Level sets and NaN are treated as `options` says; only active values of a .vdb count, a NaN

@@ -21,6 +21,9 @@ struct CodeTree;
 /// The source's own grid of values; defined in src/ingest/grids/source_grid.h.
 struct SourceGrid;
 
+/// Names and looks of labels; defined in deltasplat/ingest/label_list.h.
+struct LabelList;
+
 /// A box of voxel indices, both corners inclusive; empty when any max < min.
 struct IndexBox {
     glm::ivec3 min{0};
@@ -72,6 +75,12 @@ struct Volume {
     /// Coordinate system of the patient that world space is: "RAS" (x to the right, y to the front,
     /// z up), "LPS" (x to the left, y to the back, z up), or empty where the file names none.
     std::string space;
+    /// Unit of world lengths: "mm" in a patient's space of which the file names a unit (its lengths
+    /// are converted), elsewhere the file's own: "km", "m", "dm", "cm", "mm", "um", "nm", "pm",
+    /// "angstrom", "in", "ft". Empty where the file names none.
+    std::string lengthUnit;
+    /// What the file says of its labels; null where it does not say that its values are labels.
+    std::shared_ptr<const LabelList> labels;
     /// What codes cannot tell, if ReadOptions::keepSource asked for it: where hasBackground always,
     /// otherwise only if the code book is not exact (then a grid of the source's value type).
     std::shared_ptr<const SourceGrid> source;

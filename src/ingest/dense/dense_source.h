@@ -27,8 +27,10 @@ struct DenseSource {
     /// Values are whole numbers that a real type stands in for: codes are those of whole numbers.
     bool standsForWhole = false;
     glm::dmat4 worldFromIndex{1.0};
-    std::string space;         ///< as Volume::space
-    std::int64_t volumes = 1;  ///< how many volumes its file has, one of which it is
+    std::string space;                        ///< as Volume::space
+    std::string lengthUnit;                   ///< as Volume::lengthUnit
+    std::shared_ptr<const LabelList> labels;  ///< as Volume::labels
+    std::int64_t volumes = 1;                 ///< how many volumes its file has, one of which it is
 
     /// Receives `slices` slices from number `first` on, x fastest, without gaps.
     using LayerUse = std::function<void(int first, int slices, const std::byte* bytes)>;

@@ -399,6 +399,8 @@ Volume readDense(const DenseSource& source, const ReadOptions& options, const Li
     volume.type = rawTypeName(source.type);
     volume.gridClass = "unknown";
     volume.space = source.space;
+    volume.lengthUnit = source.lengthUnit;
+    volume.labels = source.labels;
     volume.box = {glm::ivec3(0), glm::ivec3(source.dims) - 1};
     volume.worldFromIndex = source.worldFromIndex;
     return volume;
@@ -413,6 +415,7 @@ Volume readSparse(const DenseSource& source, double background, const ReadOption
         readError = scan(source, options, partOf(listener, 0, 0.1)).census.rounding;
     TreeGrid grid = readSourceGrid(source, {}, partOf(listener, 0.1, kReadShare));
     if (!source.space.empty()) grid.metadata.insert(kSpaceKey, source.space);
+    if (!source.lengthUnit.empty()) grid.metadata.insert(kLengthUnitKey, source.lengthUnit);
     grid.apply<ScalarTrees>([&](auto& tree) { dropValue(tree, background); });
     const Listener coding = partOf(listener, kReadShare, 1);
     Volume volume =

@@ -10,6 +10,7 @@ namespace deltasplat {
 /// Metadata that say what a grid was before it was one, so that it can become that again.
 inline constexpr const char* kSourceTypeKey = "deltasplat_source_type";  ///< "uint8", ...
 inline constexpr const char* kSpaceKey = "deltasplat_space";             ///< as Volume::space
+inline constexpr const char* kLengthUnitKey = "deltasplat_length_unit";  ///< as Volume::lengthUnit
 
 /// All voxels of what it was, which active ones may no longer span: corners as vec3i.
 inline constexpr const char* kBoxMinKey = "deltasplat_box_min";

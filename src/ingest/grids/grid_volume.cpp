@@ -11,6 +11,7 @@
 #include "ingest/grids/leaf_bytes.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/vdb/vdb_transform.h"
+#include "length_unit.h"
 #include "memory.h"
 #include "number_text.h"
 
@@ -22,6 +23,7 @@ Volume placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metada
     volume.worldFromIndex = worldFromIndexOf(map, options.where);
     const std::string space = metadata.text(kSpaceKey);
     if (space == "RAS" || space == "LPS") volume.space = space;
+    volume.lengthUnit = lengthUnitNamed(metadata.text(kLengthUnitKey));
     return volume;
 }
 
