@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/delta/delta_estimate.h"
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -22,6 +20,7 @@
 #include "ingest/delta/word_tree.h"
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "vdb/write_vdb.h"
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/delta/delta_file.h"
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/matrix.hpp>
@@ -19,6 +17,7 @@
 #include "ingest/delta/word_tree.h"
 #include "ingest/grids/file_metadata.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "listener_part.h"
 #include "number_text.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/drop_background.h"
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <map>
 #include <memory>
@@ -13,6 +11,7 @@
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/leaf_bytes.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/values/value_cast.h"
 #include "memory.h"
 

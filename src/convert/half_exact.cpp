@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/half_exact.h"
 
-#include <openvdb/openvdb.h>
-
 #include <atomic>
 #include <type_traits>
 #include <vector>
 
 #include "ingest/grids/grid_values.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/values/value_cast.h"
 
 namespace deltasplat {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/take_deltas.h"
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <optional>
 #include <span>
@@ -20,6 +18,7 @@
 #include "ingest/grids/leaf_bytes.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/grids/tree_from_codes.h"
+#include "ingest/grids/tree_types.h"
 #include "memory.h"
 #include "parallel.h"
 #include "view/affine.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/volume_grid.h"
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <type_traits>
 #include <vector>
@@ -13,6 +11,7 @@
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/grids/tree_from_codes.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/values/value_cast.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "vdb/code_values.h"

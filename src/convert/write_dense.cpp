@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/write_dense.h"
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <glm/vector_relational.hpp>
@@ -19,6 +17,7 @@
 #include "ingest/files/file_name.h"
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_types.h"
 #include "memory.h"
 #include "number_text.h"
 #include "parallel.h"

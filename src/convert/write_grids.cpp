@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/write_grids.h"
 
-#include <openvdb/openvdb.h>
-
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -15,6 +13,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_types.h"
 #include "number_text.h"
 #include "vdb/write_vdb.h"
 

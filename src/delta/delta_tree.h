@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <memory>
 #include <vector>
 
 #include "deltasplat/delta/delta_grid.h"
+#include "ingest/grids/tree_types.h"
 
 namespace deltasplat {
 

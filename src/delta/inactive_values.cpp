@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "delta/inactive_values.h"
 
-#include <openvdb/openvdb.h>
-
 #include <cstdint>
 #include <type_traits>
 
 #include "ingest/codes/book_encoder.h"
 #include "ingest/grids/grid_values.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/values/distinct_values.h"
 #include "ingest/values/same_bits.h"
 #include "ingest/values/value_cast.h"

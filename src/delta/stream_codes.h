@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -11,6 +9,7 @@
 
 #include "delta/bit_writer.h"
 #include "ingest/delta/delta_format.h"
+#include "ingest/grids/tree_types.h"
 
 namespace deltasplat {
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "ingest/delta/delta_format.h"
+#include "ingest/grids/tree_types.h"
 
 namespace deltasplat {
 

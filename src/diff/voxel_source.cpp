@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "diff/voxel_source.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tree/ValueAccessor.h>
 
 #include <algorithm>
@@ -17,6 +16,7 @@
 #include "ingest/codes/code_values.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/vdb/packed_grid.h"
 
 namespace deltasplat {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "synth/sample_grids.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Prune.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/leaf_bytes.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "memory.h"
 #include "parallel.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb/written_grid.h"
 
-#include <openvdb/openvdb.h>
-
 #include <type_traits>
 
 #include "deltasplat/error.h"
+#include "ingest/grids/tree_types.h"
 #include "vdb/tree_writer.h"
 
 namespace deltasplat {

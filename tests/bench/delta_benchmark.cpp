@@ -2,7 +2,6 @@
 // Turns uint8 raw files into delta grids, stage by stage, beside what OpenVDB's own dense copy
 // takes for the same file, interleaved in one process; prints medians.
 //   delta_benchmark REPEATS THREADS engine_256x256x128_uint8.raw...
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Dense.h>
 
 #include <algorithm>
@@ -19,6 +18,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/threads.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/raw/raw_format.h"
 #include "parallel.h"
 #include "stopwatch.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the odd files that the command-line tests are given, into the current folder.
-#include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>
 #include <openvdb/points/PointDataGrid.h>
 #include <openvdb/tools/LevelSetSphere.h>
@@ -14,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "ingest/grids/tree_types.h"
 #include "make_several.h"
 
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts every data set to .vdb and compares what OpenVDB alone reads from it with the source.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -9,6 +8,7 @@
 #include <map>
 
 #include "ingest/codes/code_tree.h"
+#include "ingest/grids/tree_types.h"
 #include "unit/convert_helpers.h"
 #include "unit/vdb_compare.h"
 

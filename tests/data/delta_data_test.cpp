@@ -2,7 +2,6 @@
 // Every data set, as delta grids and back: nothing changes; with a tolerance, nothing changes by
 // more.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -16,6 +15,7 @@
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_types.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {

@@ -2,7 +2,6 @@
 // Compares the real data sets with themselves, with one voxel changed, and with their neighbours in
 // a sequence.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "deltasplat/ingest/read_volume.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_types.h"
 #include "support/kept_grid.h"
 
 namespace deltasplat {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a volume is expected to take as a delta grid is near what it takes.
 #include "deltasplat/delta/delta_estimate.h"
+#include "ingest/grids/tree_types.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <cstdint>

@@ -2,9 +2,9 @@
 // What goes into a delta grid comes out of it: read by the library and, by the format's description
 // alone, by a reader that shares no code with it.
 #include "deltasplat/delta/delta_file.h"
+#include "ingest/grids/tree_types.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <bit>
 #include <cmath>

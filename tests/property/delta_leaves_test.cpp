@@ -2,7 +2,6 @@
 // A delta grid that is read straight from its file's leaves, as voxels or packed, is the volume
 // that it is as a whole OpenVDB grid, shows the same pictures, and is refused with the same words.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <array>
 #include <cmath>
@@ -22,6 +21,7 @@
 #include "ingest/codes/slot_blocks.h"
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/read_delta_grid.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/vdb/vdb_file.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "support/same_picture.h"

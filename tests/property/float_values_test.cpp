@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Volumes of more values than there are codes: what is kept of each value, and what rays see,
 // against plain sums in double precision over the values that were written.
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <functional>
@@ -12,6 +11,7 @@
 #include "deltasplat/ingest/value_statistics.h"
 #include "deltasplat/render.h"
 #include "ingest/codes/code_tree.h"
+#include "ingest/grids/tree_types.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {

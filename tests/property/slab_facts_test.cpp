@@ -2,9 +2,9 @@
 // Parts of a picture of a delta grid that read no more of its file than they show make the picture
 // that is rendered at once.
 #include "deltasplat/slab_facts.h"
+#include "ingest/grids/tree_types.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <array>
 #include <cstdint>

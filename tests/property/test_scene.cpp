@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "property/test_scene.h"
+#include "ingest/grids/tree_types.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/io/File.h>
-#include <openvdb/openvdb.h>
 #include <unistd.h>
 
 #include <cmath>

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include "deltasplat/ingest/volume.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_types.h"
 
 namespace deltasplat::testing {
 

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cstdint>
 
 #include "deltasplat/ingest/volume.h"
 #include "ingest/codes/code_tree.h"
+#include "ingest/grids/tree_types.h"
 
 namespace deltasplat::test {
 

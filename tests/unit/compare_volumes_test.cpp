@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares the comparison with one that visits every voxel of a box, and with closed forms.
 #include "deltasplat/diff/compare_volumes.h"
+#include "ingest/grids/tree_types.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <filesystem>
 #include <glm/vec3.hpp>
@@ -12,6 +11,7 @@
 
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/ingest/read_volume.h"
+#include "ingest/grids/tree_types.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat::testing {

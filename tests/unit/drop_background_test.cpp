@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sparse grids from dense volumes: which voxels stay active, and that no value changes.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <glm/common.hpp>
 
 #include "deltasplat/convert/write_volume.h"
+#include "ingest/grids/tree_types.h"
 #include "unit/convert_helpers.h"
 #include "unit/vdb_helpers.h"
 

@@ -2,9 +2,9 @@
 // Grids that survive half precision are written, read by OpenVDB and compared; those that are said
 // not to survive are shown to lose something.
 #include "convert/half_exact.h"
+#include "ingest/grids/tree_types.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <limits>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Volumes whose values stay in their file have to compare as those that are read as a whole.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <limits>
@@ -10,6 +9,7 @@
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/threads.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/vdb/packed_grid.h"
 #include "unit/convert_helpers.h"
 #include "unit/random_grid.h"

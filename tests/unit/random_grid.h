@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
+#include "ingest/grids/tree_types.h"
 
 #include <random>
 #include <type_traits>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Damaged delta grids: each is refused with one line that says what is wrong.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <functional>
@@ -10,6 +9,7 @@
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/memory_limit.h"
 #include "ingest/delta/delta_format.h"
+#include "ingest/grids/tree_types.h"
 #include "number_text.h"
 #include "support/put_header.h"
 #include "unit/ingest_helpers.h"

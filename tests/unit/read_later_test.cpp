@@ -2,7 +2,6 @@
 // A raw volume whose voxels are read when they are asked for is the volume that is read at once,
 // shows the same pictures, and says so if its file is not what it was; so are packed deltas.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <chrono>
@@ -27,6 +26,7 @@
 #include "ingest/codes/seen_codes.h"
 #include "ingest/codes/slot_blocks.h"
 #include "ingest/delta/word_tree.h"
+#include "ingest/grids/tree_types.h"
 #include "support/same_volume.h"
 #include "support/some_scene.h"
 #include "unit/ingest_helpers.h"

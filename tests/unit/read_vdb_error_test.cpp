@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 #include <openvdb/io/Stream.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/points/PointDataGrid.h>
 
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <limits>
 
 #include "deltasplat/ingest/read_volume.h"
+#include "ingest/grids/tree_types.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 #include <openvdb/io/Stream.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <fstream>
 
 #include "deltasplat/ingest/read_volume.h"
+#include "ingest/grids/tree_types.h"
 #include "unit/ingest_helpers.h"
 #include "unit/vdb_helpers.h"
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
 #include <cmath>
@@ -8,6 +7,7 @@
 
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/threads.h"
+#include "ingest/grids/tree_types.h"
 #include "unit/ingest_helpers.h"
 #include "unit/vdb_helpers.h"
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ingest/grids/tree_types.h"
+
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <map>
 #include <string>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <functional>
@@ -13,6 +12,7 @@
 
 #include "deltasplat/ingest/volume.h"
 #include "ingest/codes/code_tree.h"
+#include "ingest/grids/tree_types.h"
 
 namespace deltasplat::testing {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/vdb/vdb_metadata.h"
+#include "ingest/grids/tree_types.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/util/Util.h>
 
 #include <sstream>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/vdb/vdb_transform.h"
+#include "ingest/grids/tree_types.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/io/Archive.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <sstream>

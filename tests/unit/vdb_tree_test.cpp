@@ -2,10 +2,10 @@
 // Grids that VdbFile::read() reads here have to be those that OpenVDB reads, inactive values,
 // tiles, metadata and transforms included: both are written again, and compared byte by byte.
 #include "ingest/vdb/vdb_tree.h"
+#include "ingest/grids/tree_types.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/io/Compression.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <cstdint>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A grid read leaf by leaf is the volume that its tree gives.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +12,7 @@
 
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/threads.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/vdb/packed_values.h"
 #include "ingest/vdb/vdb_file.h"
 #include "support/same_volume.h"

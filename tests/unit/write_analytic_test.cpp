@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/synth/write_analytic.h"
+#include "ingest/grids/tree_types.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <cstdint>

@@ -2,11 +2,11 @@
 // Volumes in formats without empty places: there and back by this project's readers, whose bytes of
 // NRRD and MetaImage ITK understands.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "deltasplat/convert/write_volume.h"
+#include "ingest/grids/tree_types.h"
 #include "unit/convert_helpers.h"
 #include "unit/vdb_helpers.h"
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What volumes become in a .vdb, read back by OpenVDB alone.
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
 #include "deltasplat/convert/write_volume.h"
+#include "ingest/grids/tree_types.h"
 #include "unit/convert_helpers.h"
 #include "unit/format_helpers.h"
 #include "unit/vdb_compare.h"

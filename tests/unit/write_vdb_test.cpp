@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What writeVdb() writes has to be, to the last byte but the tag, what openvdb::io::File writes.
 #include "vdb/write_vdb.h"
+#include "ingest/grids/tree_types.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <sys/stat.h>
 
 #include <cmath>

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "ingest/grids/tree_types.h"
 #include "ingest/vdb/vdb_leaves.h"
 #include "uncleared_vector.h"
 

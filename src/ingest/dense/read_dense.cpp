@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/Prune.h>
 
@@ -24,6 +23,7 @@
 #include "ingest/grids/grid_volume.h"
 #include "ingest/grids/leaf_bytes.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/raw/raw_values.h"
 #include "ingest/readers.h"
 #include "ingest/values/value_cast.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/grids/grid_codes.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetUtil.h>
 
 #include <algorithm>
@@ -24,6 +23,7 @@
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/leaf_bytes.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/readers.h"
 #include "ingest/values/float_kernels.h"
 #include "number_text.h"

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <type_traits>
 #include <vector>
 
 #include "deltasplat/ingest/code_book.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/grids/grid_values.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/values/value_cast.h"
 
 namespace deltasplat {

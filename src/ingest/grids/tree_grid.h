@@ -2,12 +2,12 @@
 #pragma once
 
 #include <openvdb/math/Maps.h>
-#include <openvdb/openvdb.h>
 
 #include <memory>
 #include <string>
 #include <type_traits>
 
+#include "ingest/grids/tree_types.h"
 #include "ingest/vdb/vdb_metadata.h"
 
 namespace deltasplat {

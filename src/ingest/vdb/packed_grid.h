@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/tree/Tree.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -12,6 +10,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/ingest/volume.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/vdb/vdb_leaves.h"
 
 namespace deltasplat {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <memory>
@@ -16,6 +15,7 @@
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_volume.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/readers.h"
 #include "ingest/vdb/default_grid.h"
 #include "ingest/vdb/packed_grid.h"

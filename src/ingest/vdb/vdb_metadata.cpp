@@ -2,7 +2,6 @@
 #include "ingest/vdb/vdb_metadata.h"
 
 #include <openvdb/Grid.h>
-#include <openvdb/openvdb.h>
 
 #include <array>
 #include <cstring>
@@ -13,6 +12,7 @@
 #include <utility>
 
 #include "deltasplat/error.h"
+#include "ingest/grids/tree_types.h"
 #include "printable.h"
 
 namespace deltasplat {

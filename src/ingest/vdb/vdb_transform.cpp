@@ -3,7 +3,6 @@
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/math/Maps.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -14,6 +13,7 @@
 #include <sstream>
 
 #include "deltasplat/error.h"
+#include "ingest/grids/tree_types.h"
 #include "number_text.h"
 
 namespace deltasplat {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/tree/Tree.h>
-
 #include <memory>
 #include <span>
 #include <string>
@@ -10,6 +8,7 @@
 
 #include "deltasplat/progress.h"
 #include "ingest/files/file_bytes.h"
+#include "ingest/grids/tree_types.h"
 #include "ingest/vdb/vdb_leaves.h"
 #include "ingest/vdb/vdb_walk.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/vdb/vector_part.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tree/LeafManager.h>
 
+#include "ingest/grids/tree_types.h"
 #include "parallel.h"
 
 namespace deltasplat {

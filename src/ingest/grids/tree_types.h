@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <string>
+
+// OpenVDB's trees of the usual values are generated once, in tree_types_*.cpp: a file that includes
+// this compiles in half the time. The root stays out, because a member of OpenVDB 10's that nobody
+// calls does not compile; such a member of leaves is replaced.
+
+#define DELTASPLAT_LEAF_TEXT(T) \
+    template <>                 \
+    std::string openvdb::tree::LeafNode<T, 3>::str() const
+#define DELTASPLAT_TREE(INSTANCE, T)              \
+    INSTANCE class openvdb::tree::LeafNode<T, 3>; \
+    DELTASPLAT_TREE_ABOVE(INSTANCE, T)
+#define DELTASPLAT_TREE_ABOVE(INSTANCE, T)                                                  \
+    INSTANCE class openvdb::tree::InternalNode<openvdb::tree::LeafNode<T, 3>, 4>;           \
+    INSTANCE class openvdb::tree::InternalNode<                                             \
+        openvdb::tree::InternalNode<openvdb::tree::LeafNode<T, 3>, 4>, 5>;                  \
+    INSTANCE class openvdb::tree::Tree<openvdb::tree::RootNode<openvdb::tree::InternalNode< \
+        openvdb::tree::InternalNode<openvdb::tree::LeafNode<T, 3>, 4>, 5>>>;                \
+    INSTANCE class openvdb::Grid<                                                           \
+        openvdb::tree::Tree<openvdb::tree::RootNode<openvdb::tree::InternalNode<            \
+            openvdb::tree::InternalNode<openvdb::tree::LeafNode<T, 3>, 4>, 5>>>>;
+
+DELTASPLAT_LEAF_TEXT(float);
+DELTASPLAT_LEAF_TEXT(double);
+DELTASPLAT_LEAF_TEXT(std::int32_t);
+DELTASPLAT_LEAF_TEXT(std::int64_t);
+DELTASPLAT_LEAF_TEXT(openvdb::Vec3f);
+DELTASPLAT_LEAF_TEXT(openvdb::Vec3d);
+DELTASPLAT_LEAF_TEXT(openvdb::Vec3i);
+DELTASPLAT_TREE(extern template, float)
+DELTASPLAT_TREE(extern template, double)
+DELTASPLAT_TREE(extern template, std::int32_t)
+DELTASPLAT_TREE(extern template, std::int64_t)
+DELTASPLAT_TREE(extern template, openvdb::Vec3f)
+DELTASPLAT_TREE(extern template, openvdb::Vec3d)
+DELTASPLAT_TREE(extern template, openvdb::Vec3i)
+DELTASPLAT_TREE_ABOVE(extern template, bool)
