@@ -19,8 +19,8 @@ packages=("${tools[@]}" "${headers[@]}")
 case ${1:-} in
     --to-build) packages+=("${libraries[@]}" libinsighttoolkit5-dev) ;;
     --aarch64) packages+=(g++-aarch64-linux-gnu qemu-user "${libraries[@]/%/:arm64}") ;;
-    '') packages+=("${libraries[@]}" libinsighttoolkit5-dev clang-format clang-tidy debootstrap
-        debian-archive-keyring) ;;
+    '') packages+=("${libraries[@]}" libinsighttoolkit5-dev clang-format clang-tidy
+        shellcheck python3 debootstrap debian-archive-keyring) ;;
     *)
         echo "install_dependencies.sh: got $1; expected nothing, --to-build or --aarch64" >&2
         exit 2

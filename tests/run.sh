@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 bash scripts/install_dependencies.sh
 cmake --preset release </dev/null
 cmake --build --preset release
-ctest --preset release --no-tests=error --parallel 2 </dev/null
+ctest --preset release --no-tests=error --parallel "$(nproc)" </dev/null
 
 data=$(sed -n 's/^DELTASPLAT_SHARED_DATA:PATH=//p' build/release/CMakeCache.txt)
 if [[ ! -d $data ]]; then

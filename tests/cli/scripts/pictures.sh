@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # SPDX-License-Identifier: Apache-2.0
 # What scripts that look at pictures begin with: an empty folder to work in, and what is asked of
 # pictures. What fails is said, and all of it makes the script fail in the end.

@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # SPDX-License-Identifier: Apache-2.0
 # What scripts ask of runs of the program: exit codes, what is said on standard error, files that
 # are left. `fail` is theirs.

@@ -79,7 +79,7 @@ render toned_ink.png "${corner[@]}" --tone filmic --exposure -3
 for file in ink toned_ink; do "$oiiotool" -q $file.png --cut 200x30+0+0 -o ${file}_top.png; done
 expect_same ink_top.png toned_ink_top.png
 top=$("$oiiotool" ink_top.png --printstats | sed -n 's/^ *Stats Max: \([^ ]*\) .*/\1/p')
-[[ $top > 0.8 ]] || fail "ink_top.png: got $top; expected letters"
+holds "$top > 0.8" || fail "ink_top.png: got $top; expected letters"
 
 # Values stay values.
 for mode in mip xray; do
