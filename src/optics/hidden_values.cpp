@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "deltasplat/ingest/value_statistics.h"
 #include "optics/type_range.h"
 
 namespace deltasplat {
@@ -29,6 +30,21 @@ bool showsValue(const TransferFunction& function, const std::optional<glm::dvec2
     if (!function.normalized) return function.opacityAt(value) > 0;
     const std::optional<glm::dvec2> ends = range ? range : rangeOfType(type);
     return ends && function.opacityAt((value - ends->x) / (ends->y - ends->x)) > 0;
+}
+
+double hiddenShare(const Volume& volume, const TransferFunction& function,
+                   const std::optional<glm::dvec2>& range) {
+    const std::optional<double> background = guessBackground(volume);
+    std::uint64_t all = 0;
+    std::uint64_t hidden = 0;
+    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
+        if (volume.histogram[code] == 0) continue;
+        if (background && volume.codeBook.standsFor(Code(code), *background)) continue;
+        all += volume.histogram[code];
+        if (!showsValue(function, range, volume.type, volume.codeBook.valueOf(Code(code))))
+            hidden += volume.histogram[code];
+    }
+    return all > 0 ? double(hidden) / double(all) : 0;
 }
 
 }  // namespace deltasplat

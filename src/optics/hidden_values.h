@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "deltasplat/ingest/volume.h"
 #include "deltasplat/optics/transfer_function.h"
 
 namespace deltasplat {
@@ -20,5 +21,11 @@ bool hidesValues(const TransferFunction& function, bool hasRange);
 /// @param type   Volume::type
 bool showsValue(const TransferFunction& function, const std::optional<glm::dvec2>& range,
                 const std::string& type, double value);
+
+/// Returns the share of a volume's active voxels that a transfer function makes clear, 0..1. Voxels
+/// of the background do not count, nor those of a guessed one (guessBackground).
+/// @param range  Optics::range
+double hiddenShare(const Volume& volume, const TransferFunction& function,
+                   const std::optional<glm::dvec2>& range);
 
 }  // namespace deltasplat

@@ -195,7 +195,7 @@ TransferFunction presetFunction(const std::string& name) {
 void fitPreset(const Preset& preset, const Volume& volume, Optics& optics) {
     if (preset.values != Values::kRange || optics.range) return;
     const DefaultFloats floats;
-    glm::dvec2 range = bulkRange(volume);
+    glm::dvec2 range = rampRange(volume);
     // A range has some width: so little that no other value lies in it.
     constexpr double kLeast = 1e-300;
     if (range.x == range.y)

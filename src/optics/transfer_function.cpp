@@ -56,6 +56,44 @@ std::vector<std::uint64_t> countsWithoutBackground(const Volume& volume) {
     return counts;
 }
 
+// Whether 0 lies where most values do, of as many cells of the same width between the ends.
+bool mostAreNearZero(const Volume& volume, const glm::dvec2& ends) {
+    constexpr int kCells = 8;
+    const auto cellOf = [&](double value) {
+        const double cell = kCells * ((value - ends.x) / (ends.y - ends.x));
+        return std::clamp(int(cell), 0, kCells - 1);
+    };
+    std::vector<std::uint64_t> cells(kCells);
+    const std::vector<std::uint64_t> counts = uncutHistogram(volume);
+    for (std::size_t code = 0; code < counts.size(); ++code) {
+        const double value = counts[code] == 0 ? ends.y : volume.codeBook.valueOf(Code(code));
+        if (counts[code] != 0 && value >= ends.x && value <= ends.y)
+            cells[cellOf(value)] += counts[code];
+    }
+    return std::max_element(cells.begin(), cells.end()) == cells.begin() + cellOf(0);
+}
+
+// Whether values lie on both sides of 0, which stands for nothing: a map of z values, a difference.
+// A side that is less than a tenth of the other is no side: filters overshoot that far.
+bool divergesFromZero(const Volume& volume, const glm::dvec2& bulk) {
+    constexpr double kLeastSide = 0.1;
+    const double least = kLeastSide * std::max(-bulk.x, bulk.y);
+    if (!(-bulk.x >= least && bulk.y >= least && bulk.x < 0 && bulk.y > 0)) return false;
+    const std::optional<double> background = guessBackground(volume);
+    return background ? *background == 0 : mostAreNearZero(volume, bulk);
+}
+
+// Clear at 0, the same blue and red as those of the preset coolwarm at the farther of two ends.
+TransferFunction divergingRamp(const glm::dvec2& range) {
+    const double end = std::max(-range.x, range.y);
+    TransferFunction ramp;
+    ramp.name = "diverging ramp";
+    ramp.colorSpace = ColorSpace::kDiverging;
+    ramp.colors = {{-end, {0.230, 0.299, 0.754}}, {end, {0.706, 0.016, 0.150}}};
+    ramp.opacities = {{-end, kRampOpacity, 0.5, 0}, {0, 0, 0.5, 0}, {end, kRampOpacity, 0.5, 0}};
+    return ramp;
+}
+
 TransferFunction greyRamp(const glm::dvec2& range) {
     TransferFunction ramp;
     ramp.name = "grey ramp";
@@ -132,9 +170,17 @@ glm::dvec2 bulkRange(const Volume& volume) {
             volume.codeBook.valueOf(percentileCode(counts, 99))};
 }
 
+glm::dvec2 rampRange(const Volume& volume) {
+    glm::dvec2 range = bulkRange(volume);
+    if (isFog(volume) && volume.background < range.y) range.x = volume.background;
+    return range;
+}
+
 TransferFunction defaultRamp(const Volume& volume) {
     const DefaultFloats floats;
-    return defaultRamp(volume, bulkRange(volume));
+    const glm::dvec2 range = rampRange(volume);
+    if (!isFog(volume) && divergesFromZero(volume, range)) return divergingRamp(range);
+    return defaultRamp(volume, range);
 }
 
 TransferFunction defaultRamp(const Volume& volume, const glm::dvec2& range) {

@@ -342,9 +342,62 @@ TEST(DefaultRamp, fogIsWhiteWhereItIsThinToo) {
     volume.gridClass = "fog volume";
     const TransferFunction ramp = defaultRamp(volume);
     for (const double x : {-1.0, 3.0, 4.0, 8.0, 100.0}) EXPECT_EQ(ramp.colorAt(x), glm::dvec3(1));
-    EXPECT_EQ(ramp.opacities[0].x, 3);
-    EXPECT_EQ(ramp.opacityAt(3), 0);
+    EXPECT_EQ(ramp.opacityAt(0), 0);
     EXPECT_EQ(ramp.opacityAt(8), kRampOpacity);
+}
+
+// Of a fog nearly all of which is at its thinnest, the first percentile is what it is made of.
+TEST(DefaultRamp, showsTheThinnestFog) {
+    Volume volume = volumeOf("half", {5000, 0, 910, 0, 0, 0, 0, 0, 90});
+    EXPECT_EQ(hiddenShare(volume, defaultRamp(volume), {}), 0.91);
+    volume.gridClass = "fog volume";
+    const TransferFunction ramp = defaultRamp(volume);
+    EXPECT_EQ(ramp.opacityAt(0), 0);
+    EXPECT_DOUBLE_EQ(ramp.opacityAt(2), kRampOpacity / 4);
+    EXPECT_EQ(hiddenShare(volume, ramp, {}), 0);
+    EXPECT_EQ(rampRange(volume), glm::dvec2(0, 8));
+    // Where the background is more than all else, nothing says what is empty.
+    volume.background = 20;
+    EXPECT_EQ(rampRange(volume).x, 0);
+}
+
+// A volume with values from `lowest` on, one to a code.
+Volume signedVolume(int lowest, const std::vector<std::uint64_t>& counts) {
+    Volume volume = volumeOf("int16", counts);
+    volume.codeBook.offset = lowest;
+    volume.valueMin = lowest;
+    volume.valueMax = lowest + int(counts.size()) - 1;
+    return volume;
+}
+
+TEST(DefaultRamp, divergesFromZeroWhereMostValuesAre) {
+    // -3 to 4: half of them 0, or many near it.
+    for (const auto& counts : {std::vector<std::uint64_t>{5, 10, 20, 600, 30, 20, 10, 5},
+                               std::vector<std::uint64_t>{5, 10, 20, 30, 25, 20, 10, 5}}) {
+        const TransferFunction ramp = defaultRamp(signedVolume(-3, counts));
+        ASSERT_EQ(ramp.opacities.size(), 3u);
+        EXPECT_EQ(ramp.opacityAt(0), 0);
+        EXPECT_EQ(ramp.opacityAt(4), kRampOpacity);
+        EXPECT_EQ(ramp.opacityAt(-4), kRampOpacity);
+        EXPECT_DOUBLE_EQ(ramp.opacityAt(-1), ramp.opacityAt(1));
+        EXPECT_GT(ramp.colorAt(-3).b, ramp.colorAt(-3).r);
+        EXPECT_GT(ramp.colorAt(3).r, ramp.colorAt(3).b);
+    }
+}
+
+TEST(DefaultRamp, goesOneWayWhereZeroIsAValueAsOthers) {
+    // Most are air, at the lower end; most are 2; nothing but a little overshoot is below 0.
+    for (const auto& counts : {std::vector<std::uint64_t>{900, 10, 20, 25, 30, 20, 10, 5},
+                               std::vector<std::uint64_t>{5, 10, 20, 25, 30, 900, 10, 5}}) {
+        EXPECT_EQ(defaultRamp(signedVolume(-3, counts)).name, "grey ramp");
+    }
+    std::vector<std::uint64_t> overshoot(100, 10);
+    overshoot[3] = 900;
+    EXPECT_EQ(defaultRamp(signedVolume(-3, overshoot)).name, "grey ramp");
+    // Fog has no other side.
+    Volume fog = signedVolume(-3, {5, 10, 20, 600, 30, 20, 10, 5});
+    fog.gridClass = "fog volume";
+    EXPECT_EQ(defaultRamp(fog).name, "white ramp");
 }
 
 TEST(DefaultRamp, knowsFogByItsClassOrItsName) {

@@ -283,6 +283,18 @@ void warnOfLabels(const std::string& who, const PictureOptions& picture, const P
     if (!preset) warnOfUnlistedLabels(picture.parts.labels, table, volume, listener);
 }
 
+// Who sees little of a volume, and has not asked for that, should know why.
+void warnOfHidden(const std::filesystem::path& input, const Volume& volume,
+                  const TransferFunction& ramp, const Listener& listener) {
+    constexpr double kMuch = 0.5;
+    const double share = hiddenShare(volume, ramp, {});
+    if (share <= kMuch) return;
+    listener.warn(input.string() + ": " + std::to_string(int(100 * share)) +
+                  " % of the voxels are not shown, for the ramp begins at " +
+                  numberText(ramp.opacities.front().x) +
+                  ", which is the value of most; --range LO,HI has it begin elsewhere");
+}
+
 // Puts into `options` what depends on the volume: all of it, whatever is cut off.
 // @param isWhole  what will be seen is that volume
 void fitOptics(const std::filesystem::path& input, const PictureOptions& picture,
@@ -304,6 +316,8 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
             preset  ? presetFunction(preset->name)
             : range ? (isOfValues ? wholeRamp(volume, *range) : defaultRamp(volume, *range))
                     : (isOfValues ? wholeRamp(volume) : defaultRamp(volume));
+        if (!preset && !range && !isOfValues && !options.optics.surface)
+            warnOfHidden(input, volume, options.optics.transferFunction, listener);
     } else {
         if (preset) fitPreset(*preset, volume, options.optics);
         const bool isOpen = options.optics.transferFunction.normalized && !options.optics.range;

@@ -310,9 +310,10 @@ void addOpticsOptions(CLI::App& app, PictureOptions& options) {
                    "preset:" +
                        presetNames() + "\n(default: " + kScanPreset +
                        " for CT scans, in Hounsfield units of a\n"
-                       "patient, labels for files that say they hold some; else a ramp over the "
-                       "1st to 99th percentile of the\n"
-                       "values, white for fog, else from black to white)");
+                       "patient, labels for files that say they hold some; else a ramp over the\n"
+                       "1st to 99th percentile of the values: white for fog, and from the\n"
+                       "background on; blue below and red above 0 where most values are near\n"
+                       "0; else from black to white)");
     group.addQuestion("--list-tf", "FILE", listPresets,
                       "Only list the presets, or draw them to FILE (.png or .svg; with\n"
                       "other options a new one)");

@@ -22,7 +22,11 @@ bool isHounsfield(const Volume& volume);
 /// they are the background and 1 more.
 glm::dvec2 bulkRange(const Volume& volume);
 
-/// Returns defaultRamp(volume) with other ends.
+/// Returns the values at which default ramps and presets of a range begin and end: bulkRange, but
+/// of fog (isFog) from the background on, for all that is more is there.
+glm::dvec2 rampRange(const Volume& volume);
+
+/// Returns a ramp as defaultRamp(volume) is, grey or white, with other ends.
 /// @param range  the values that are clear and as dense as the ramp gets; range.x < range.y
 TransferFunction defaultRamp(const Volume& volume, const glm::dvec2& range);
 

@@ -39,10 +39,10 @@ const Preset* findPreset(const std::string& name);
 TransferFunction presetFunction(const std::string& name);
 
 /// Lets a preset of a range show where most values of the volume lie: unless `optics.range` is
-/// given, it becomes bulkRange(volume), the 1st to the 99th percentile (default_ramp.h). Where both
-/// are the same value, the preset is as below its range below that value, and as at the range's
-/// end from there on, as defaultRamp is. Without this a normalized function's range is
-/// defaultRange. Presets of other values are left alone.
+/// given, it becomes rampRange(volume), the 1st to the 99th percentile, or of fog from the
+/// background on (default_ramp.h). Where both are the same value, the preset is as below its range
+/// below that value, and as at the range's end from there on, as defaultRamp is. Without this a
+/// normalized function's range is defaultRange. Presets of other values are left alone.
 void fitPreset(const Preset& preset, const Volume& volume, Optics& optics);
 
 }  // namespace deltasplat

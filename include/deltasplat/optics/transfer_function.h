@@ -67,10 +67,10 @@ struct TransferFunction {
 TransferFunction readTransferFunction(const std::filesystem::path& file,
                                       const Listener& listener = {});
 
-/// Returns the ramp used when none is given: clear at the 1st, `kRampOpacity` at the 99th
-/// percentile of the active values other than the background; white for fog (isFog,
-/// default_ramp.h), otherwise from black to white. Where both are the same value, it is clear below
-/// it, dense from there on. A volume with nothing but background is clear throughout.
+/// Returns the ramp used when none is given: clear at rampRange's (default_ramp.h) lower end, with
+/// `kRampOpacity` at its upper end, white for fog (isFog), else from black to white; or, where 0
+/// stands for nothing and values lie on both sides, clear at 0, blue below, red above. Where both
+/// ends are one value, it is dense from there on. A volume with nothing but background is clear.
 TransferFunction defaultRamp(const Volume& volume);
 inline constexpr double kRampOpacity = 0.1;
 
