@@ -37,6 +37,7 @@ struct Found {
     double value = 0;
     double distance = 0;
     bool isMet = false;
+    double weight = 1;
 };
 
 struct SumFinder {
@@ -116,16 +117,18 @@ struct MeanFinder {
             weights += taps.share * weight;
         });
     }
-    Found result() const { return {weights > 0 ? sum / weights : 0, 0, weights > 0}; }
+    Found result() const { return {weights > 0 ? sum / weights : 0, 0, weights > 0, weights}; }
 };
 
 // The farthest that anything of the box is from the eye, and the nearest that is seen.
-DepthShade shadeOf(const Volume& volume, const Camera& camera, double darker) {
+DepthShade shadeOf(const RayTask& task) {
+    const Camera& camera = task.camera;
+    const double darker = task.options.mode == Mode::kMip ? task.options.depthShade : 0;
     const bool panorama = camera.projection == Projection::kLatlong;
     DepthShade shade{darker, std::numeric_limits<double>::infinity(), 0};
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec4 index(cornerOf(volume.box, corner), 1);
-        const glm::dvec3 away = glm::dvec3(volume.worldFromIndex * index) - camera.eyeWorld();
+        const glm::dvec4 index(cornerOf(task.whole, corner), 1);
+        const glm::dvec3 away = glm::dvec3(task.volume.worldFromIndex * index) - camera.eyeWorld();
         const double depth = panorama ? glm::length(away) : glm::dot(away, camera.direction);
         shade.nearest = std::min(shade.nearest, depth);
         shade.farthest = std::max(shade.farthest, depth);
@@ -153,25 +156,26 @@ Camera refined(Camera camera, int rays) {
 // All that the pixels of a picture have in common.
 class EyePicture {
   public:
-    EyePicture(const Volume& volume, const RenderOptions& options, const Camera& camera,
-               const RayVolume& rays)
-        : mode_(options.mode),
-          camera_(camera),
-          raysPerSide_(raysPerSide(camera, volume)),
+    EyePicture(const RayTask& task, const RayVolume& rays)
+        : mode_(task.options.mode),
+          camera_(task.camera),
+          part_(task.part),
+          raysPerSide_(raysPerSide(camera_, task.volume)),
           empty_(rays.empty),
-          linear_(volume.worldFromIndex),
-          rays_(refined(camera, raysPerSide_), glm::inverse(linear_)),
-          bricks_(rays, showsSums(options.mode) ? 0 : kNotActive),
-          painter_(volume, options, rays),
-          shade_(shadeOf(volume, camera, options.mode == Mode::kMip ? options.depthShade : 0)) {
+          linear_(task.volume.worldFromIndex),
+          rays_(refined(camera_, raysPerSide_), glm::inverse(linear_)),
+          bricks_(rays, showsSums(mode_) ? 0 : kNotActive),
+          painter_(task.volume, task.options, rays, task.keepsFound),
+          shade_(shadeOf(task)) {
+        const Volume& volume = task.volume;
         box_ = {volume.box.min - bricks_.origin(), volume.box.max - bricks_.origin()};
         // From the first voxel, so that numbers stay small.
         const glm::dvec3 first(volume.worldFromIndex * glm::dvec4(bricks_.origin(), 1));
-        eye_ = glm::inverse(linear_) * (camera.eyeWorld() - first);
+        eye_ = glm::inverse(linear_) * (camera_.eyeWorld() - first);
     }
 
     void paintRow(int y, float* rgba) const {
-        for (int x = 0; x < camera_.sizePixels.x; ++x, rgba += 4) paint({x, y}, rgba);
+        for (int x = part_.min.x; x < part_.max.x; ++x, rgba += 4) paint({x, y}, rgba);
     }
 
   private:
@@ -179,11 +183,13 @@ class EyePicture {
     void paint(glm::ivec2 pixel, float* rgba) const {
         double value = 0;
         double shade = 0;
+        double weight = 0;
         int met = 0;
         for (int j = 0; j < raysPerSide_; ++j) {
             for (int i = 0; i < raysPerSide_; ++i) {
                 const Found found = find(raysPerSide_ * pixel + glm::ivec2(i, j), shade);
                 value += found.value;
+                weight += found.weight;
                 met += found.isMet;
             }
         }
@@ -191,7 +197,7 @@ class EyePicture {
         if (showsSums(mode_)) {
             std::fill_n(rgba, 4, float(value / count));
         } else if (2 * met >= count) {
-            painter_.paint({float(value / met), float(shade / met), true}, rgba);
+            painter_.paint({float(value / met), float(shade / met), true, float(weight)}, rgba);
         }
     }
 
@@ -228,6 +234,7 @@ class EyePicture {
 
     Mode mode_;
     const Camera& camera_;
+    PixelBox part_;
     int raysPerSide_;
     float empty_;
     glm::dmat3 linear_;
@@ -241,25 +248,27 @@ class EyePicture {
 
 }  // namespace
 
-void renderFromEye(const Volume& volume, const RenderOptions& options, const Listener& listener,
-                   RenderResult& result) {
+void renderFromEye(const RayTask& task, const Listener& listener, Image& image,
+                   RenderStats& stats) {
     const Clock::time_point start = Clock::now();
-    const RayVolume rays = makeRayVolume(volume, 0, eyeRule(options.mode), valueMapOf(options));
-    const EyePicture picture(volume, options, result.camera, rays);
-    RenderStats& stats = result.stats;
-    stats.prepareSeconds = secondsSince(start);
+    const RenderOptions& options = task.options;
+    const RayVolume rays =
+        makeRayVolume(task.volume, 0, eyeRule(options.mode), valueMapOf(options));
+    const EyePicture picture(task, rays);
+    stats.prepareSeconds += secondsSince(start);
     stats.visible = rays.visible;
 
     const Clock::time_point renderStart = Clock::now();
-    Image& image = result.image;
     std::atomic<int> done = 0;
     SharedProgress progress(listener);
     parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
-        picture.paintRow(int(y), image.pixel(0, int(y)));
+        picture.paintRow(task.part.min.y + int(y), image.pixel(0, int(y)));
         progress.report(0.1 + 0.8 * ++done / image.size.y);
     });
     stats.footprint = 1;
-    stats.splatSeconds = stats.renderSeconds = secondsSince(renderStart);
+    const double seconds = secondsSince(renderStart);
+    stats.splatSeconds += seconds;
+    stats.renderSeconds += seconds;
 }
 
 }  // namespace deltasplat

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "deltasplat/render.h"
+#include "ray_picture.h"
 
 namespace deltasplat {
 
-/// Renders what lines of sight from an eye meet of a volume that is not empty, pixel by pixel:
-/// all modes but kComposite; of kDrr the integrals. As `renderRays` otherwise.
-void renderFromEye(const Volume& volume, const RenderOptions& options, const Listener& listener,
-                   RenderResult& result);
+/// Renders what lines of sight from an eye meet, pixel by pixel: all modes but kComposite; of kDrr
+/// the integrals. As `renderRays` otherwise.
+/// @param image  of the task's part
+void renderFromEye(const RayTask& task, const Listener& listener, Image& image, RenderStats& stats);
 
 }  // namespace deltasplat

@@ -5,11 +5,17 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
+#include <vector>
 
+#include "delta/slab_layout.h"
 #include "deltasplat/ingest/slot.h"
 #include "empty_picture.h"
 #include "eye_render.h"
+#include "far_groups.h"
+#include "image/clear_image.h"
 #include "image/warp.h"
+#include "listener_part.h"
 #include "parallel.h"
 #include "ray_picture.h"
 #include "rays/blur_plane.h"
@@ -65,17 +71,21 @@ void divideByCounts(const RayPlane& counts, RayPlane& sums) {
 
 // Makes the picture of values, of what is met and of shades, all warped: a pixel is met where it is
 // by half or more, and has the means of the values and shades that are.
-void combineMet(const Image& met, const Image* shade, const ValuePainter& painter, Image& image) {
+// @param weights  of means, if these matter
+void combineMet(const Image& met, const Image* shade, const Image* weights,
+                const ValuePainter& painter, Image& image) {
     parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
         float* rgba = image.pixel(0, int(y));
         const float* share = met.pixel(0, int(y));
         const float* shades = shade ? shade->pixel(0, int(y)) : nullptr;
+        const float* weight = weights ? weights->pixel(0, int(y)) : nullptr;
         for (int x = 0; x < image.size.x; ++x, rgba += 4, share += 4) {
             FoundValue found;
             found.isMet = share[3] >= 0.5f;
             if (found.isMet) {
                 found.value = rgba[3] / share[3];
                 if (shades) found.shade = std::min(shades[4 * x + 3] / share[3], 1.0f);
+                if (weight) found.weight = weight[4 * x + 3];
             }
             painter.paint(found, rgba);
         }
@@ -83,15 +93,12 @@ void combineMet(const Image& met, const Image* shade, const ValuePainter& painte
 }
 
 // A parallel picture on its way: what lies where, and what it is for.
-struct ParallelView {
-    const Volume& volume;
-    const RenderOptions& options;
-    const Camera& camera;
+struct ParallelView : RayTask {
     const Factorization& factors;
 };
 
-// How deep along the line of sight places in the volume lie, counted from its first voxel; from one
-// to the next.
+// How deep along the line of sight places in the volume lie, counted from the first voxel of all;
+// from one to the next.
 glm::dvec3 depthSteps(const ParallelView& view) {
     const glm::dmat3 linear(view.volume.worldFromIndex);
     const glm::ivec3 order = sliceOrder(view.factors.sliceAxis);
@@ -100,7 +107,8 @@ glm::dvec3 depthSteps(const ParallelView& view) {
     return steps;
 }
 
-DepthShade shadeOf(const ParallelView& view, const glm::dvec3& steps, const IndexBox& box) {
+DepthShade shadeOf(const ParallelView& view, const glm::dvec3& steps) {
+    const IndexBox box = permutedBox(view.whole, view.factors.sliceAxis);
     DepthShade shade{view.options.depthShade, 0, 0};
     for (int axis = 0; axis < 3; ++axis) {
         const double way = steps[axis] * (box.dims()[axis] - 1);
@@ -114,7 +122,8 @@ DepthShade shadeOf(const ParallelView& view, const glm::dvec3& steps, const Inde
 void shadePlaces(const ParallelView& view, const IndexBox& box, const SheetLayout& layout,
                  const BasePlane& basePlane, const RayPlane& met, RayPlane& places) {
     const glm::dvec3 steps = depthSteps(view);
-    const DepthShade shade = shadeOf(view, steps, box);
+    const DepthShade shade = shadeOf(view, steps);
+    const glm::dvec3 firstSlices(box.min - permutedBox(view.whole, view.factors.sliceAxis).min);
     const glm::dvec2 first = layout.firstVoxel - glm::ivec2(box.min.z, box.min.y);
     const glm::ivec2 size = places.box.size();
     parallelFor(std::size_t(size.y), [&](std::size_t row) {
@@ -125,7 +134,7 @@ void shadePlaces(const ParallelView& view, const IndexBox& box, const SheetLayou
             const glm::ivec2 pixel(places.box.min.x + x, places.box.min.y + int(row));
             const glm::dvec2 at =
                 first + basePlane.positionOf(pixel) + basePlane.placeOf(box.min.x + slice).offset;
-            const double depth = glm::dot(steps, glm::dvec3(slice, at.y, at.x));
+            const double depth = glm::dot(steps, firstSlices + glm::dvec3(slice, at.y, at.x));
             out[x] = isMet[x] * shade.at(depth);
         }
     });
@@ -137,13 +146,16 @@ RayRule parallelRule(Mode mode) {
     return mode == Mode::kMin ? RayRule::kMaxActive : RayRule::kSum;
 }
 
-void renderParallel(const ParallelView& view, const Listener& listener, RenderResult& result) {
+// @param image  of the view's part
+void renderParallel(const ParallelView& view, const Listener& listener, Image& image,
+                    RenderStats& stats) {
     const Clock::time_point start = Clock::now();
-    const auto& [volume, options, camera, factors] = view;
+    const Volume& volume = view.volume;
+    const RenderOptions& options = view.options;
+    const Factorization& factors = view.factors;
     const RayRule rule = parallelRule(options.mode);
     const RayVolume rays = makeRayVolume(volume, factors.sliceAxis, rule, valueMapOf(options));
-    RenderStats& stats = result.stats;
-    stats.prepareSeconds = secondsSince(start);
+    stats.prepareSeconds += secondsSince(start);
 
     const Clock::time_point renderStart = Clock::now();
     const Footprint footprint =
@@ -155,41 +167,118 @@ void renderParallel(const ParallelView& view, const Listener& listener, RenderRe
     RayPlanes planes = followRays({rays, rule, layout, basePlane, shades}, listener);
     RayPlane& plane = planes.values;
     stats.visible = rays.visible;
+    std::optional<RayPlane> counts;
     if (options.mode == Mode::kAverage) {
         const RayVolume ones =
             makeRayVolume(volume, factors.sliceAxis, rule, {.scale = 0, .offset = 1});
-        divideByCounts(followRays({ones, rule, layout, basePlane}, listener).values, plane);
+        counts.emplace(followRays({ones, rule, layout, basePlane}, listener).values);
+        divideByCounts(*counts, plane);
         stats.visible = ones.visible;
     }
-    stats.splatSeconds = secondsSince(renderStart);
+    const double splatSeconds = secondsSince(renderStart);
 
     const glm::dmat3& map = basePlane.pixelFromPicture();
+    const auto partOf = [&](Image& of) {
+        return PicturePart(of, view.part.min, view.camera.sizePixels);
+    };
+    double compositeSeconds = 0;
     if (showsSums(options.mode)) {
         plane = blurPlane(plane, footprint, float(factors.sliceStepWorld));
-        stats.compositeSeconds = secondsSince(renderStart) - stats.splatSeconds;
-        warp(rasterOf(plane), map, WarpFilter::kSmooth, result.image);
+        compositeSeconds = secondsSince(renderStart) - splatSeconds;
+        warp(rasterOf(plane), map, WarpFilter::kSmooth, partOf(image));
     } else {
         const RayPlane met = splitMet(plane);
         if (shades) shadePlaces(view, rays.box, layout, basePlane, met, *planes.places);
-        stats.compositeSeconds = secondsSince(renderStart) - stats.splatSeconds;
-        Image share(result.image.size);
-        Image shade(shades ? result.image.size : glm::ivec2(0));
-        warp(rasterOf(met), map, WarpFilter::kLinear, share);
-        if (shades) warp(rasterOf(*planes.places), map, WarpFilter::kLinear, shade);
-        warp(rasterOf(plane), map, WarpFilter::kLinear, result.image);
-        combineMet(share, shades ? &shade : nullptr, ValuePainter(volume, options, rays),
-                   result.image);
+        compositeSeconds = secondsSince(renderStart) - splatSeconds;
+        Image share(image.size);
+        Image shade(shades ? image.size : glm::ivec2(0));
+        const bool weighs = counts && view.keepsFound;
+        Image weight(weighs ? image.size : glm::ivec2(0));
+        warp(rasterOf(met), map, WarpFilter::kLinear, partOf(share));
+        if (shades) warp(rasterOf(*planes.places), map, WarpFilter::kLinear, partOf(shade));
+        if (weighs) warp(rasterOf(*counts), map, WarpFilter::kLinear, partOf(weight));
+        warp(rasterOf(plane), map, WarpFilter::kLinear, partOf(image));
+        combineMet(share, shades ? &shade : nullptr, weighs ? &weight : nullptr,
+                   ValuePainter(volume, options, rays, view.keepsFound), image);
     }
     stats.resolution = kResolution;
     stats.footprint = footprint.width;
-    stats.renderSeconds = secondsSince(renderStart);
-    stats.warpSeconds = stats.renderSeconds - stats.splatSeconds - stats.compositeSeconds;
+    const double seconds = secondsSince(renderStart);
+    stats.splatSeconds += splatSeconds;
+    stats.compositeSeconds += compositeSeconds;
+    stats.renderSeconds += seconds;
+    stats.warpSeconds += seconds - splatSeconds - compositeSeconds;
 }
 
 bool isEmpty(const Image& image) {
     for (std::size_t i = 3; i < image.rgba.size(); i += 4)
         if (image.rgba[i] != 0) return false;
     return true;
+}
+
+void renderTask(const RayTask& task, const Factorization& view, const Listener& listener,
+                Image& image, RenderStats& stats) {
+    if (task.camera.projection == Projection::kOrtho) {
+        renderParallel({task, view}, listener, image, stats);
+    } else {
+        renderFromEye(task, listener, image, stats);
+    }
+}
+
+// Puts what a group of voxels shows to what others do.
+// @param found  of a part of the picture
+void putTogether(const Image& found, glm::ivec2 first, Mode mode, Image& all) {
+    parallelFor(std::size_t(found.size.y), [&](std::size_t y) {
+        const float* rgba = found.pixel(0, int(y));
+        float* out = all.pixel(first.x, first.y + int(y));
+        for (int x = 0; x < found.size.x; ++x, rgba += 4, out += 4) {
+            if (showsSums(mode)) {
+                for (int c = 0; c < 4; ++c) out[c] += rgba[c];
+                continue;
+            }
+            FoundValue one = ValuePainter::keptIn(rgba);
+            const FoundValue before = ValuePainter::keptIn(out);
+            if (!one.isMet) continue;
+            if (before.isMet && mode == Mode::kAverage) {
+                one.value = (before.weight * before.value + one.weight * one.value) /
+                            (before.weight + one.weight);
+                one.weight += before.weight;
+            } else if (before.isMet && before.value >= one.value) {
+                continue;
+            }
+            out[0] = one.value;
+            out[1] = one.shade;
+            out[2] = one.weight;
+            out[3] = 1;
+        }
+    });
+}
+
+// Follows rays through groups of voxels that lie far apart, one after the other.
+void renderFar(const FarGroups& far, const RayTask& whole, const Factorization& view,
+               const Listener& listener, RenderResult& result) {
+    const std::vector<std::size_t> order = far.frontToBack(whole.camera);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const FarGroups::Seen seen = far.seenBy(whole.camera, order[i]);
+        if (seen.isNothing()) continue;
+        const Volume volume = far.volume(order[i]);
+        Image image = clearImage(seen.part.size());
+        const double count = double(order.size());
+        renderTask({volume, whole.options, whole.camera, seen.part, whole.whole, true}, view,
+                   partOf(listener, double(i) / count, double(i + 1) / count), image, result.stats);
+        putTogether(image, seen.part.min, whole.options.mode, result.image);
+    }
+    far.warnOfDots(whole.camera, listener);
+    if (showsSums(whole.options.mode)) return;
+    // The range of values is that of all in whatever group.
+    const Volume one = far.volume(0);
+    const RayVolume rays = makeRayVolume(one, 0, RayRule::kMax, valueMapOf(whole.options));
+    const ValuePainter painter(whole.volume, whole.options, rays);
+    parallelFor(std::size_t(result.image.size.y), [&](std::size_t y) {
+        float* rgba = result.image.pixel(0, int(y));
+        for (int x = 0; x < result.image.size.x; ++x, rgba += 4)
+            painter.paint(ValuePainter::keptIn(rgba), rgba);
+    });
 }
 
 }  // namespace
@@ -204,11 +293,14 @@ void renderRays(const Volume& volume, const RenderOptions& options, const Listen
     result.stats.sliceAxis = view.sliceAxis;
     result.stats.slices = volume.box.dims()[view.sliceAxis];
     if (!volume.empty()) {
-        warnOfValues(volume, options, result.stats.slices, view.sliceStepWorld, listener);
-        if (parallel) {
-            renderParallel({volume, options, result.camera, view}, listener, result);
+        const std::optional<FarGroups> far = FarGroups::find(volume);
+        const RayTask whole{
+            volume, options, result.camera, {{0, 0}, result.camera.sizePixels}, volume.box};
+        warnOfValues(volume, options, far ? 1 : result.stats.slices, view.sliceStepWorld, listener);
+        if (far) {
+            renderFar(*far, whole, view, listener, result);
         } else {
-            renderFromEye(volume, options, listener, result);
+            renderTask(whole, view, listener, result.image, result.stats);
         }
         // Sums may be 0 of what is there.
         if (!showsSums(options.mode) && isEmpty(result.image))

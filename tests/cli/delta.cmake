@@ -22,6 +22,10 @@ add_test(NAME cli.delta.round_trip COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/script
     ${DELTASPLAT_FIXTURES}/cube_8x8x8_uint8.raw)
 set_tests_properties(cli.delta.round_trip PROPERTIES LABELS cli TIMEOUT 120
                      FIXTURES_REQUIRED cli_files)
+add_test(NAME cli.far_apart COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/scripts/far_apart.sh
+    $<TARGET_FILE:deltasplat_tool> ${CMAKE_CURRENT_BINARY_DIR}/cli/far_apart
+    ${DELTASPLAT_FIXTURES}/far.vdb)
+set_tests_properties(cli.far_apart PROPERTIES LABELS cli TIMEOUT 120 FIXTURES_REQUIRED cli_files)
 add_test(NAME cli.delta.exact COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/scripts/exact_deltas.sh
     $<TARGET_FILE:deltasplat_tool> ${CMAKE_CURRENT_BINARY_DIR}/cli/exact_deltas)
 set_tests_properties(cli.delta.exact PROPERTIES LABELS cli TIMEOUT 120)

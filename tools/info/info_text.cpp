@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "box_voxels.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "info/info_report.h"
 #include "memory.h"
@@ -51,7 +52,7 @@ std::string axisText(const GridReport& report, int axis) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4f", comparability(report, axis));
     return "comparability " + std::string(text) + " as data, " + std::to_string(counts.deltas) +
-           " deltas (" + percent(double(counts.deltas), double(report.volume.box.voxels())) + ")";
+           " deltas (" + percent(double(counts.deltas), double(voxelsOf(report.volume.box))) + ")";
 }
 
 std::string backgroundText(const GridReport& report) {
@@ -208,7 +209,7 @@ std::string gridText(const GridReport& report) {
                                             toText(v.box.max, ", ") + ")");
     text += textLine("voxel size", sizeText(v.voxelSize())) + placeText(v);
     text += textLine("active", std::to_string(v.activeCount) + " (" +
-                                   percent(double(v.activeCount), double(v.box.voxels())) + ")");
+                                   percent(double(v.activeCount), double(voxelsOf(v.box))) + ")");
     text += valuesText(v);
     text += textLine("background", backgroundText(report)) + textLine("code book", codeBookText(v));
     if (v.origin) text += textLine("delta grid", deltaText(*v.origin));

@@ -10,6 +10,7 @@
 #include "batch/file_pattern.h"
 #include "batch/memory_gate.h"
 #include "batch/output_name.h"
+#include "box_voxels.h"
 #include "conversion/conversion_stats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/ingest/list_grids.h"
@@ -50,9 +51,9 @@ double bytesFor(const RenderCommand& command) {
     const glm::dvec2 pixels(command.picture.render.camera.sizePixels);
     double bytes = kBytesPerByte * double(bytesOf({command.input}));
     try {
-        std::int64_t voxels = 0;
+        std::uint64_t voxels = 0;
         for (const VolumeEntry& entry : listVolumes(command.input, command.picture.read))
-            if (entry.box) voxels = std::max(voxels, entry.box->voxels());
+            if (entry.box) voxels = std::max(voxels, voxelsOf(*entry.box));
         if (voxels > 0) bytes = std::min(bytes, kBytesPerVoxel * double(voxels));
     } catch (const Error&) {
         return bytes + kBytesPerPixel * pixels.x * pixels.y;
