@@ -148,6 +148,10 @@ void writeOtherBalls() {
     writeVdb("same_names.vdb", {ball("density"), ball("densitx")});
     writeBytes("same_names.vdb",
                std::regex_replace(readBytes("same_names.vdb"), std::regex("densitx"), "density"));
+    // Grids that would have files of one name.
+    writeVdb("odd_grids.a.vdb", {ball("density")});
+    writeVdb("odd_grids.b.vdb", {ball("a/b"), ball("a_b"), ball("c")});
+    writeBytes("odd_grids.c.vdb", readBytes("same_names.vdb"));
 }
 
 void writeVdbFiles() {
