@@ -673,9 +673,9 @@ deltasplat_cli_test(usage.jpg_bits EXIT 2 ARGS render ${cube} -o out.jpg --bits 
 deltasplat_cli_test(usage.tif_float EXIT 2 ARGS render ${cube} -o out.tif --float
     STDERR "deltasplat: --float: got out.tif; expected an .exr file")
 deltasplat_cli_test(usage.picture_format EXIT 2 ARGS render ${cube} -o out.gif
-    STDERR "deltasplat: out.gif: got extension \".gif\"; expected .exr, .png, .tif or .jpg")
+    STDERR "deltasplat: out.gif: got extension \".gif\"; expected .exr, .png, .tif or .jpg (numbers: .npy, .nrrd or .mha)")
 deltasplat_cli_test(usage.picture_no_format EXIT 2 ARGS render ${cube} -o out
-    STDERR "deltasplat: out: got extension \"\"; expected .exr, .png, .tif or .jpg")
+    STDERR "deltasplat: out: got extension \"\"; expected .exr, .png, .tif or .jpg (numbers: .npy, .nrrd or .mha)")
 # What is drawn over a picture, and where it would say something wrong.
 foreach(option legend scale-bar axes annotate=text)
     string(REGEX REPLACE "=.*" "" name ${option})

@@ -68,7 +68,8 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command, File
     const Files mask = filesOfMask(command.picture.parts);
     inputs.insert(inputs.end(), mask.begin(), mask.end());
     warnOfUnusedInputOptions(app, inputs, display.stage(0, 0));
-    if (isGiven(app, "--bits") && isExr(command)) display.warn("--bits: has no effect on an .exr");
+    if (isGiven(app, "--bits") && (isExr(command) || command.image.numbers))
+        display.warn("--bits: has no effect on an .exr or a picture of numbers");
     if (isGiven(app, "--dither") && (isExr(command) || command.image.bits == 16))
         display.warn("--dither: has no effect but in pictures of 8 bits");
     warnOfUnusedTone(app, command, display);

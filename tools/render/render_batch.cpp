@@ -79,6 +79,7 @@ PictureFacts factsOf(const BatchItem& item, const RenderCommand& command) {
 
 // Values are shown as greys.
 std::string thumbnailOfFile(const fs::path& file, bool holdsValues) {
+    if (isOfNumbers(imageFormatOf(file))) return thumbnailOf(Image());
     Image image = readThumbnail(file, kThumbnailSide);
     if (holdsValues && !image.rgba.empty()) {
         for (std::size_t i = 3; i < image.rgba.size(); i += 4)
@@ -266,8 +267,8 @@ bool isBatch(const CLI::App& app, const RenderCommand& command) {
     if (!hasFrames && isPattern(command.input)) {
         if (command.frames.asked())
             refuse("--frames", "it with a pattern of inputs", "one or the other");
-        for (const char* option :
-             {"--turntable", "--first-pass", "--missing", "--movie", "--fps", "--slab-range"})
+        for (const char* option : {"--turntable", "--poses", "--first-pass", "--missing", "--movie",
+                                   "--fps", "--slab-range"})
             if (isGiven(app, option))
                 refuse(option, "it with a pattern of inputs", "a sequence or one volume");
         if (command.output.empty())

@@ -214,7 +214,9 @@ void addMethodOption(CLI::App& app, Method& chosen) {
 
 void addStorageOptions(CLI::App& app, ImageFileOptions& image) {
     OptionGroup group(app, "Output");
-    group.addFlag("--float", image.floatExr, "Store 32-bit floats in an .exr, not halves");
+    group.addFlag("--float", image.floatExr,
+                  "Store 32-bit floats in an .exr, not halves; numbers (--mode xray,\n"
+                  "mip, min, average, drr) in a .tif as well, as .npy, .nrrd and .mha do");
     group.addValue(
         "--bits", "8|16", image.bits, bits(),
         withDefault("Bits per channel of a .png or .tif; of a .jpg 8", std::to_string(image.bits)));
