@@ -201,9 +201,8 @@ void prepare(const CLI::App& app, RenderCommand& command, std::size_t pictures,
 
 void runBatch(const CLI::App& app, const RenderCommand& command, const Session& session) {
     WorstBound worst;
-    std::vector<BatchFailure> failures;
     const std::jthread loading = loadEarly(command.output);
-    const auto run = [&] {
+    {
         ProgressDisplay display(session.common);
         const Listener listener = display.stage(0, 1);
         const std::vector<BatchItem> items = findBatch(command, listener);
@@ -235,13 +234,7 @@ void runBatch(const CLI::App& app, const RenderCommand& command, const Session& 
         work.end = [&] {
             if (sinks) sinks->finish();
         };
-        renderBatch(command, items, session.commandLine, work, listener, failures);
-    };
-    try {
-        run();
-    } catch (const Error&) {
-        showFailures(failures);
-        throw;
+        renderBatch(command, items, session.commandLine, work, listener);
     }
     worst.show(session);
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <utility>
 
@@ -17,6 +16,7 @@
 #include "deltasplat/threads.h"
 #include "flag_names.h"
 #include "image/thumbnail.h"
+#include "listener.h"
 #include "lower_case.h"
 #include "memory.h"
 #include "output_files.h"
@@ -125,14 +125,6 @@ class BatchRun {
     }
 
     const std::vector<IndexEntry>& entries() const { return entries_; }
-
-    std::vector<BatchFailure> failures() const {
-        std::vector<BatchFailure> failures;
-        for (std::size_t i = 0; i < items_.size(); ++i)
-            if (!entries_[i].failure.empty())
-                failures.push_back({nameOfItem(items_[i]), entries_[i].failure});
-        return failures;
-    }
 
   private:
     void noteThoseThere(const std::vector<FrameFiles>& frames) {
@@ -302,8 +294,7 @@ RenderCommand commandOf(const RenderCommand& command, const BatchItem& item) {
 }
 
 void renderBatch(const RenderCommand& command, const std::vector<BatchItem>& items,
-                 const std::string& commandLine, const BatchWork& work, const Listener& listener,
-                 std::vector<BatchFailure>& failures) {
+                 const std::string& commandLine, const BatchWork& work, const Listener& listener) {
     interruptBetweenFiles();
     const Clock::time_point begin = Clock::now();
     const RenderCommand first = checkFirst(command, items, work);
@@ -313,7 +304,6 @@ void renderBatch(const RenderCommand& command, const std::vector<BatchItem>& ite
     }
     BatchRun run(command, items, work, storesValues(first));
     const auto finish = [&] {
-        failures = run.failures();
         work.end();
         writeIndex(command, first.picture.render.camera.sizePixels, commandLine,
                    secondsSince(begin), run);
@@ -321,23 +311,16 @@ void renderBatch(const RenderCommand& command, const std::vector<BatchItem>& ite
     try {
         run.run(listener);
     } catch (const Error& error) {
-        if (error.code() != ErrorCode::kInterrupted) finish();
+        if (error.code() == ErrorCode::kInterrupted) throw;
+        // What is wrong with the pictures has the last word.
+        try {
+            finish();
+        } catch (const Error& problem) {
+            showError(problem.what());
+        }
         throw;
     }
     finish();
-}
-
-void showFailures(const std::vector<BatchFailure>& failures) {
-    if (failures.empty()) return;
-    std::size_t width = 0;
-    for (const BatchFailure& failure : failures)
-        width = std::max(width, std::min<std::size_t>(failure.name.size(), 60));
-    std::fputs("Failed:\n", stderr);
-    for (const BatchFailure& failure : failures) {
-        std::string name = printable(failure.name);
-        name.resize(std::max(name.size(), width), ' ');
-        std::fprintf(stderr, "  %s  %s\n", name.c_str(), failure.what.c_str());
-    }
 }
 
 }  // namespace deltasplat
