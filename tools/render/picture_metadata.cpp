@@ -74,6 +74,8 @@ ImageFileOptions imageOptions(const RenderCommand& command, const CodeText& code
                                                      {"codeBook", codes.book},
                                                      {"codeError", codes.error}});
     const RenderOptions& render = command.picture.render;
+    if (result.stats.mode != Mode::kComposite)
+        options.metadata.emplace_back("kernel", "trilinear, mean of pixels larger than a voxel");
     if (result.stats.mode == Mode::kDrr) {
         options.metadata.emplace_back("muWater", numberText(render.drr.muWater));
         if (render.drr.photons)

@@ -118,10 +118,9 @@ void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
         "--join",    "--extinction", "--unit-distance",   "--color-by",         "--shade",
         "--light",   "--ambient",    "--diffuse",         "--specular",         "--shininess",
         "--surface", "--isovalue",   "--surface-color",   "--gradient-opacity", "--density-scale",
-        "--filter"};
+        "--filter",  "--sigma"};
     for (const std::vector<std::string>& ofFog : {scatterOptions(), mediumOptions()})
         unused.insert(unused.end(), ofFog.begin(), ofFog.end());
-    if (colorsValues(command)) unused.push_back("--sigma");
     if (!colorsValues(command) || storesValues(command))
         unused.insert(unused.end(),
                       {"--tf", "--range", "--hide-labels", "--show-labels", "--label-opacity"});
@@ -129,10 +128,6 @@ void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
         if (isGiven(app, option))
             display.warn(option + ": has no effect with --mode " + modeName(mode));
     }
-    const bool fromEye = command.picture.render.camera.projection != Projection::kOrtho;
-    if (isGiven(app, "--sigma") && !colorsValues(command) && fromEye)
-        display.warn("--sigma: has no effect with --mode " + modeName(mode) +
-                     " but in --projection ortho");
     if (isGiven(app, "--background") && (storesValues(command) || mode == Mode::kDrr))
         display.warn("--background: has no effect on " +
                      std::string(storesValues(command) ? "an .exr or numbers" : "a picture") +

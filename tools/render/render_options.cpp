@@ -167,7 +167,9 @@ void addModeOption(CLI::App& app, Mode& chosen) {
                                "in world units), mip, min or average (largest or smallest value\n"
                                "along the line of sight, or the mean of active ones) or drr\n"
                                "(radiograph of a CT scan in Hounsfield units: which share of\n"
-                               "x-rays gets through): all but the first store their values as\n"
+                               "x-rays gets through): all but the first interpolate values\n"
+                               "trilinearly (xray and drr integrate that exactly; a pixel larger\n"
+                               "than a voxel has the mean of its square), store them as\n"
                                "32-bit floats in an .exr, and are shown as greys elsewhere (mip,\n"
                                "min and average in the colours of --tf, if that is given; drr\n"
                                "white where little gets through)",
