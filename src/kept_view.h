@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "composite/layer.h"
-#include "deltasplat/image/pixel_box.h"
 #include "picture_view.h"
 
 namespace deltasplat {
@@ -14,10 +13,6 @@ namespace deltasplat {
 struct KeptView {
     std::unique_ptr<const PictureView> picture;
     Layer layer;
-    /// Where voxels lie far apart: the group that it shows, and the pixels that may show it; it
-    /// goes behind views before it.
-    std::shared_ptr<const PreparedScene::Impl> group = nullptr;
-    PixelBox part{};
 };
 
 /// As renderComposite, but for the warp: what it would show.

@@ -9,7 +9,6 @@
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "image/clear_image.h"
-#include "image/put_behind.h"
 #include "layered_views.h"
 #include "memory.h"
 
@@ -78,21 +77,9 @@ LayeredPicture::Impl::Impl(const PreparedScene& ofScene, const Camera& ofCamera,
             gotExpected("`mostJoined`", std::to_string(prepared.options.mostJoined) + " for slabs",
                         "1 or 2"));
     }
-    if (!prepared.far) {
-        addViews(prepared, listener);
-        return;
-    }
-    for (const std::size_t number : prepared.far->frontToBack(camera)) {
-        if (prepared.far->seenBy(camera, number).isNothing()) continue;
-        groups.push_back(std::make_unique<PreparedScene::Impl>(prepared, number));
-        addViews(*groups.back(), listener);
-    }
-    prepared.far->warnOfDots(camera, listener);
-}
-
-void LayeredPicture::Impl::addViews(const PreparedScene::Impl& prepared, const Listener& listener) {
+    const Volume& volume = *prepared.scene.volume;
     const ViewPlan plan(prepared, camera, false, listener);
-    if (prepared.scene.volume->empty()) return;
+    if (volume.empty()) return;
     for (const Factorization& view : plan.views) {
         auto axis = prepared.axis(view, plan.sheets, listener, &camera);
         views.push_back(std::make_unique<PictureView>(prepared, camera, view, plan.sheets,
@@ -173,11 +160,7 @@ void LayeredPicture::fold(std::span<const SlabLayer> layers, Image& image) const
                                y);
             }
         }
-        const bool isFirst = view == 0;
-        Image behind;
-        if (!isFirst) behind = clearImage(image.size);
-        picture.views[view]->show(merged, PicturePart(isFirst ? image : behind));
-        if (!isFirst) putBehind(image, {0, 0}, behind);
+        picture.views[view]->show(merged, image);
     }
 }
 

@@ -213,9 +213,9 @@ PlanePlace PictureView::placePlane() const {
     return place;
 }
 
-double PictureView::show(Layer& layer, const PicturePart& part) const {
+double PictureView::show(Layer& layer, Image& image) const {
     finish(layer);
-    return showPart(layer, part);
+    return showPart(layer, PicturePart(image));
 }
 
 ErrorBound PictureView::errorBound() const {

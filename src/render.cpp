@@ -4,7 +4,6 @@
 #include <memory>
 #include <string>
 
-#include "box_voxels.h"
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "dims_text.h"
@@ -83,7 +82,7 @@ RenderResult renderFrame(const Volume& volume, const RenderOptions& options,
         result.image = clearImage(result.camera.sizePixels);
     };
     RenderStats& stats = result.stats;
-    stats.voxels = voxelsOf(volume.box);
+    stats.voxels = std::uint64_t(volume.box.voxels());
     stats.mode = options.mode;
     stats.method = options.method;
     if (options.mode == Mode::kComposite) {

@@ -88,6 +88,7 @@ Json placeJson(const Volume& volume) {
             {"origin", vectorJson(place.origin)},
             {"directions", {vectorJson(d[0]), vectorJson(d[1]), vectorJson(d[2])}},
             {"space", volume.space.empty() ? Json() : Json(volume.space)},
+            {"length_unit", volume.lengthUnit.empty() ? Json() : Json(volume.lengthUnit)},
             {"target", vectorJson(camera.targetWorld)},
             {"frame_width", camera.frameWidthWorld}};
 }

@@ -32,7 +32,7 @@ std::string spaceText(const std::string& space);
 std::string directionText(const VolumePlace& place, const std::string& space, int axis);
 
 /// Returns the members `world_box`, `origin`, `directions` (one unit vector each for i, j and k),
-/// `space`, `target` and `frame_width` (of a square front view), for a JSON object.
+/// `space`, `length_unit`, `target` and `frame_width` (of a square front view), for a JSON object.
 nlohmann::ordered_json placeJson(const Volume& volume);
 
 /// Returns the options that make `render` take this camera again, whatever the volume.

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/matrix.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "convert/take_deltas.h"
+#include "convert/volume_grid.h"
 #include "default_floats.h"
 #include "delta/stream_writer.h"
 #include "deltasplat/diff/compare_volumes.h"
@@ -16,6 +18,7 @@
 #include "ingest/delta/read_delta_grid.h"
 #include "ingest/delta/word_tree.h"
 #include "ingest/grids/file_metadata.h"
+#include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/grids/tree_types.h"
 #include "ingest/vdb/vdb_transform.h"
@@ -95,6 +98,10 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
     checkTolerance("`tolerance.value`", options.tolerance.value);
     requireRoom(options.tolerance, volume);
 
+    const std::optional<Volume> scaled =
+        hasMap(volume.worldFromIndex) ? std::nullopt : std::optional(withHoldableUnit(volume));
+    const glm::dmat4& worldFromIndex = (scaled ? *scaled : volume).worldFromIndex;
+    const std::string& lengthUnit = (scaled ? *scaled : volume).lengthUnit;
     const TreeGrid* const source = volume.source ? &volume.source->grid : nullptr;
     TakenDeltas taken = takeDeltas(volume, options, partOf(listener, 0, 0.6));
     DeltaHeader& header = taken.header;
@@ -110,7 +117,9 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
     }
     grid.metadata.insert(openvdb::GridBase::META_GRID_NAME, volume.name);
     grid.metadata.insert(openvdb::GridBase::META_GRID_CREATOR, std::string("deltasplat"));
-    grid.map = permutedMap(volume.worldFromIndex, header.sliceAxis);
+    if (!lengthUnit.empty()) grid.metadata.insert(kLengthUnitKey, lengthUnit);
+    if (volume.labels) grid.metadata.insert(kLabelsKey, labelText(*volume.labels));
+    grid.map = permutedMap(worldFromIndex, header.sliceAxis);
     putDeltaHeader(header, grid.metadata);
 
     DeltaFileEntry entry;

@@ -5,6 +5,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "deltasplat/ingest/label_list.h"
+#include "ingest/placement.h"
+#include "length_unit.h"
+
 namespace deltasplat {
 namespace {
 
@@ -57,6 +61,22 @@ void DenseLayout::turnTo(const std::string& otherSpace) {
         worldFromIndex[column].y = -worldFromIndex[column].y + 0.0;
     }
     space = otherSpace;
+}
+
+void DenseLayout::noteLabels(const std::string& format, bool all, Notes& notes) const {
+    if (!labels || (!all && labels->entries.empty())) return;
+    const std::string named = labels->entries.empty() ? "" : "names and colours of labels";
+    const std::string said = all ? "that values are labels" : "";
+    notes.loss(named + (named.empty() || said.empty() ? "" : ", and ") + said +
+               (all && named.empty() ? " is left out: " : " are left out: ") + format +
+               " has no place for " + (all && named.empty() ? "it" : "them") +
+               " (.vdb and .seg.nrrd have)");
+}
+
+void DenseLayout::turnToMillimetres() {
+    if (lengthUnit.empty() || lengthUnit == "mm") return;
+    scaleLengths(worldFromIndex, millimetresIn(lengthUnit));
+    lengthUnit = "mm";
 }
 
 const DenseFormat* findDenseFormat(const std::string& extension) {

@@ -4,6 +4,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <string>
 
 #include "convert/write_report.h"
@@ -15,9 +16,11 @@ namespace deltasplat {
 struct DenseLayout {
     glm::ivec3 dims{1};  ///< voxels along x, y, z
     RawType type = RawType::kUint8;
-    bool bigEndian = false;          ///< of values of several bytes
-    glm::dmat4 worldFromIndex{1.0};  ///< maps the first voxel, (0, 0, 0), to its place
-    std::string space;               ///< as Volume::space
+    bool bigEndian = false;                   ///< of values of several bytes
+    glm::dmat4 worldFromIndex{1.0};           ///< maps the first voxel, (0, 0, 0), to its place
+    std::string space;                        ///< as Volume::space
+    std::string lengthUnit;                   ///< as Volume::lengthUnit
+    std::shared_ptr<const LabelList> labels;  ///< as Volume::labels
 
     glm::dvec3 origin() const { return worldFromIndex[3]; }
     /// World lengths of one step along each axis.
@@ -29,7 +32,11 @@ struct DenseLayout {
     /// Turns world space from the patient's RAS to LPS or back; what has no space keeps its
     /// numbers.
     void turnTo(const std::string& otherSpace);
-    /// Returns "256x256x128".
+    /// Says that names and colours of labels are lost, if there are any, or with `all` that values
+    /// are labels.
+    void noteLabels(const std::string& format, bool all, Notes& notes) const;
+    /// Turns known lengths into millimetres, which is what other programs take lengths for.
+    void turnToMillimetres();
 };
 
 /// How files of one extension are written.

@@ -65,6 +65,9 @@ std::string vectorText(const glm::dvec3& v) {
 
 void settleMetaImage(DenseLayout& layout, const std::string&, Notes& notes) {
     layout.turnTo("LPS");
+    // ITK takes places for millimetres, and scales sizes alone where the header has another unit.
+    layout.turnToMillimetres();
+    layout.noteLabels("MetaImage", false, notes);
     if (!layout.isOrthogonal()) {
         notes.loss(
             "axes that are not at right angles: MetaImage has only rotations, and programs "
@@ -83,10 +86,13 @@ std::string metaImageHeader(const DenseLayout& layout, const std::string& dataFi
     if (!layout.space.empty()) {
         text += "AnatomicalOrientation = " + orientationText(directions) + "\n";
     }
+    if (!layout.lengthUnit.empty()) text += "DistanceUnits = mm\n";
     text += "ElementSpacing =" + vectorText(layout.spacing()) + "\n";
     text += "DimSize = " + std::to_string(layout.dims.x) + " " + std::to_string(layout.dims.y) +
             " " + std::to_string(layout.dims.z) + "\n";
     text += "ElementType = " + typeText(layout.type) + "\n";
+    // As ITK keeps the intent of a NIfTI file.
+    if (layout.labels) text += "intent_code = 1002\n";
     return text + "ElementDataFile = " + (dataFile.empty() ? "LOCAL" : dataFile) + "\n";
 }
 

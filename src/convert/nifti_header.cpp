@@ -110,6 +110,8 @@ void settleNifti(DenseLayout& layout, const std::string& file, Notes& notes) {
         notes.remark("no patient space is known; NIfTI takes world space for RAS");
     }
     layout.turnTo("RAS");
+    layout.turnToMillimetres();
+    layout.noteLabels("NIfTI", false, notes);
     const glm::dmat4 written = asFloats(layout.worldFromIndex);
     if (!givesPlaces(written)) {
         throw Error(ErrorCode::kFailed,
@@ -131,13 +133,15 @@ std::string niftiHeader(const DenseLayout& layout, const std::string&) {
         fields.set(place, std::int16_t(dim));
         place += sizeof(std::int16_t);
     }
+    constexpr std::int16_t kLabelIntent = 1002;
+    if (layout.labels) fields.set(68, kLabelIntent);
     fields.set(70, dataType(layout.type));
     fields.set(72, std::int16_t(8 * rawTypeBytes(layout.type)));
     fields.setFloats(76, {1, spacing.x, spacing.y, spacing.z, 1, 1, 1, 1});
     fields.setFloats(108,
                      {double(kDataStart), 1, 0});  // values are as stored: slope 1, intercept 0
     constexpr auto kMillimetres = std::uint8_t(2);
-    if (!layout.space.empty()) fields.set(123, kMillimetres);
+    if (!layout.lengthUnit.empty()) fields.set(123, kMillimetres);
     fields.setText(148, "deltasplat " DELTASPLAT_VERSION);
     if (layout.isOrthogonal()) setQuaternion(layout, fields);
     setMatrix(layout, fields);

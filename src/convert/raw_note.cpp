@@ -33,6 +33,9 @@ void notePlace(const DenseLayout& layout, const std::string& lack, std::string o
     if (readBack != layout.worldFromIndex) dropped += " axis directions";
     if (!layout.space.empty())
         dropped += (dropped.empty() ? " " : " and ") + layout.space + " space";
+    if (layout.space.empty() && !layout.lengthUnit.empty())
+        dropped += (dropped.empty() ? " " : " and ") + std::string("that lengths are in ") +
+                   layout.lengthUnit;
     if (!options.empty()) notes.remark(lack + "; read it with" + options);
     if (!dropped.empty()) notes.loss(lack + ", which drops" + dropped);
 }
@@ -49,10 +52,12 @@ void settleRaw(DenseLayout& layout, const std::string& file, Notes& notes) {
         if (ordered) options += layout.bigEndian ? " `bigEndian=true`" : " `bigEndian=false`";
     }
     notePlace(layout, "no header", options, notes);
+    layout.noteLabels("a file without a header", true, notes);
 }
 
 void settleNpy(DenseLayout& layout, const std::string&, Notes& notes) {
     notePlace(layout, "no place in its header", "", notes);
+    layout.noteLabels("NumPy's format", true, notes);
 }
 
 }  // namespace deltasplat

@@ -12,8 +12,10 @@
 #include "ingest/grids/source_grid.h"
 #include "ingest/grids/tree_from_codes.h"
 #include "ingest/grids/tree_types.h"
+#include "ingest/placement.h"
 #include "ingest/values/value_cast.h"
 #include "ingest/vdb/vdb_transform.h"
+#include "length_unit.h"
 #include "vdb/code_values.h"
 
 namespace deltasplat {
@@ -92,6 +94,7 @@ VdbMetadata metadataOf(const Volume& volume) {
     }
     if (!volume.space.empty()) metadata.insert(kSpaceKey, volume.space);
     if (!volume.lengthUnit.empty()) metadata.insert(kLengthUnitKey, volume.lengthUnit);
+    if (volume.labels) metadata.insert(kLabelsKey, labelText(*volume.labels));
     return metadata;
 }
 
@@ -108,6 +111,21 @@ std::shared_ptr<const WrittenTree> writtenTree(const Volume& volume, const std::
 
 }  // namespace
 
+Volume withHoldableUnit(Volume volume) {
+    const double own = millimetresIn(volume.lengthUnit);
+    if (own == 0 || hasMap(volume.worldFromIndex)) return volume;
+    for (const char* const unit : {"mm", "um", "nm", "pm"}) {
+        const double factor = own / millimetresIn(unit);
+        glm::dmat4 scaled = volume.worldFromIndex;
+        scaleLengths(scaled, factor);
+        if (!(factor > 1) || !hasMap(scaled)) continue;
+        volume.worldFromIndex = scaled;
+        volume.lengthUnit = unit;
+        break;
+    }
+    return volume;
+}
+
 std::string gridTypeOf(const Volume& volume) {
     const bool keepsType = volume.hasBackground && isGridType(volume.type);
     if (!keepsType) return smallestType(factsOf(volume));
@@ -120,7 +138,13 @@ WrittenGrid writtenCodes(const Volume& volume, const std::string& type, double b
 }
 
 TreeGrid gridOf(const Volume& volume) {
-    if (volume.source && volume.hasBackground) return volume.source->grid;
+    if (volume.source && volume.hasBackground) {
+        TreeGrid grid = volume.source->grid;
+        // The volume's place counts, which may be in another unit.
+        if (matrixOf(*grid.map) != volume.worldFromIndex) grid.map = makeMap(volume.worldFromIndex);
+        if (!volume.lengthUnit.empty()) grid.metadata.insert(kLengthUnitKey, volume.lengthUnit);
+        return grid;
+    }
     const std::string type = gridTypeOf(volume);
     return {volume.source ? fromSource(volume.source->grid, type) : fromCodes(volume, type),
             metadataOf(volume), makeMap(volume.worldFromIndex)};

@@ -9,6 +9,10 @@
 
 namespace deltasplat {
 
+/// Returns the volume with lengths in a unit in which OpenVDB holds them, where its own makes
+/// voxels too small and a unit is known; else as it is.
+Volume withHoldableUnit(Volume volume);
+
 /// Returns the grid that a volume is. The grid of a .vdb source is that source itself.
 /// Otherwise: a volume that has a background (it was a .vdb once) gets a grid of its own type
 /// again, another one a float grid if floats hold every value, else int32 if that does, else

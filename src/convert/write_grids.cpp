@@ -143,7 +143,7 @@ WriteReport writeGrids(const std::filesystem::path& file, std::vector<Volume> vo
     const VdbMetadata metadata = fileMetadata(volumes);
     std::vector<WrittenGrid> grids;
     for (std::size_t i = 0; i < volumes.size(); ++i) {
-        grids.push_back(storedGrid(std::move(volumes[i]), options, notes));
+        grids.push_back(storedGrid(withHoldableUnit(std::move(volumes[i])), options, notes));
         listener.report(kGridShare * double(i + 1) / double(volumes.size()));
     }
     Listener writing = listener;

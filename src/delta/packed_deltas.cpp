@@ -29,16 +29,10 @@ namespace deltasplat {
 namespace {
 
 // Adds blocks in which nothing is seen but what the painter adds, in the order in which they are.
-// @param box  of the volume, which may be a group of what the painter knows
-void addBlocks(const BlockSet& more, const IndexBox& box, int sliceAxis,
-               std::vector<CodeBlock>& blocks) {
-    const auto isInBox = [&](const glm::ivec3& position) {
-        const glm::ivec3 first = 8 * position;
-        return first == glm::clamp(first, box.min - 7, box.max);
-    };
+void addBlocks(const BlockSet& more, int sliceAxis, std::vector<CodeBlock>& blocks) {
     std::vector<CodeBlock> added;
     for (const glm::ivec3& position : more.positions)
-        if (isInBox(position)) added.push_back({toSliceOrder(position, sliceAxis)});
+        added.push_back({toSliceOrder(position, sliceAxis)});
     std::sort(added.begin(), added.end(), comesBefore);
     std::vector<CodeBlock> all;
     std::set_union(blocks.begin(), blocks.end(), added.begin(), added.end(),
@@ -189,7 +183,7 @@ struct DeltaPacker::Impl {
         blocks = sight ? sight->listBlocks(*volume.codes, options.sliceAxis, volume.histogram)
                        : listBlocks(*volume.codes, options.sliceAxis, slotMap, seen);
         if (options.painter && options.painter->more())
-            addBlocks(*options.painter->more(), volume.box, options.sliceAxis, blocks);
+            addBlocks(*options.painter->more(), options.sliceAxis, blocks);
         if (seen && (sight || options.painter)) {
             std::erase_if(blocks,
                           [&](const CodeBlock& block) { return !seen->sees(block.position); });

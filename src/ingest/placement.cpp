@@ -20,6 +20,25 @@ bool givesPlaces(const glm::dmat4& worldFromIndex) {
     return usable && std::abs(glm::determinant(glm::dmat3(worldFromIndex))) >= kLeastVolume * edges;
 }
 
+glm::dmat4 withThickness(const glm::dmat4& worldFromIndex, const glm::i64vec3& dims,
+                         double thickness) {
+    glm::dmat4 whole = worldFromIndex;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (dims[axis] != 1 || glm::length(glm::dvec3(whole[axis])) > 0) continue;
+        const glm::dvec3 normal =
+            glm::cross(glm::dvec3(whole[(axis + 1) % 3]), glm::dvec3(whole[(axis + 2) % 3]));
+        const double length = glm::length(normal);
+        if (length > 0) whole[axis] = glm::dvec4(normal / length * thickness, 0);
+    }
+    return whole;
+}
+
+void scaleLengths(glm::dmat4& worldFromIndex, double factor) {
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 3; ++row) worldFromIndex[column][row] *= factor;
+    }
+}
+
 void requirePlacement(const std::string& where, const std::string& what, const glm::dmat4& matrix) {
     if (givesPlaces(matrix)) return;
     throw Error(ErrorCode::kInput,

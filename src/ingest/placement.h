@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 #include <string>
 
 namespace deltasplat {
@@ -13,6 +14,14 @@ inline constexpr double kMostLength = 1e15;
 /// Returns whether worldFromIndex gives every voxel a place of its own, in sizes that a double can
 /// still tell apart.
 bool givesPlaces(const glm::dmat4& worldFromIndex);
+
+/// Returns the placement of one slice with a thickness: where the volume is one voxel deep along an
+/// axis that leads nowhere, that axis is at right angles to the others and `thickness` long.
+glm::dmat4 withThickness(const glm::dmat4& worldFromIndex, const glm::i64vec3& dims,
+                         double thickness);
+
+/// Makes all lengths of a placement `factor` times as long.
+void scaleLengths(glm::dmat4& worldFromIndex, double factor);
 
 /// Checks that a file's worldFromIndex gives places.
 /// @param what  "an sform", "spacing and directions"

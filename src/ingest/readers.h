@@ -15,12 +15,17 @@ namespace deltasplat {
 /// Opens a .raw or .raw.gz file.
 DenseSource openRaw(const std::filesystem::path& file, const RawFormat& format);
 
-/// Opens a .nii or .nii.gz file.
+/// Opens a .nii file, or a .hdr and .img pair.
 DenseSource openNifti(const std::filesystem::path& file, const ReadOptions& options,
                       const Listener& listener);
 
-/// Opens a .nrrd, .nhdr, .mhd or .mha file.
-DenseSource openItk(const std::filesystem::path& file);
+/// Opens a .nrrd or .nhdr file.
+DenseSource openNrrd(const std::filesystem::path& file, const ReadOptions& options,
+                     const Listener& listener);
+
+/// Opens a .mhd or .mha file.
+DenseSource openMetaImage(const std::filesystem::path& file, const ReadOptions& options,
+                          const Listener& listener);
 
 /// Opens a stack of images, or the pages of one.
 /// @param input   for messages

@@ -10,9 +10,8 @@
 
 namespace deltasplat {
 
-/// All that is read through ITK and GDCM, as ImageModule is of OpenImageIO.
+/// What is read through ITK and GDCM, as ImageModule is of OpenImageIO.
 struct MedicalModule {
-    DenseSource (*openItk)(const std::filesystem::path& file);
     std::vector<DicomSeries> (*findSeries)(const std::filesystem::path& input,
                                            const std::vector<std::filesystem::path>& files);
     DenseSource (*openDicom)(const std::filesystem::path& input, const std::string& name,
@@ -25,13 +24,12 @@ const MedicalModule& medicalModule();
 /// What the module is made of.
 namespace medical_module {
 
-DenseSource openItk(const std::filesystem::path& file);
 std::vector<DicomSeries> findSeries(const std::filesystem::path& input,
                                     const std::vector<std::filesystem::path>& files);
 DenseSource openDicom(const std::filesystem::path& input, const std::string& name,
                       DicomSeries series);
 
-inline constexpr MedicalModule kModule{openItk, findSeries, openDicom};
+inline constexpr MedicalModule kModule{findSeries, openDicom};
 
 }  // namespace medical_module
 

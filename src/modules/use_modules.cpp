@@ -39,10 +39,6 @@ DenseSource openImages(const std::filesystem::path& input, const std::string& na
     return imageModule().openImages(input, name, files, format, listener);
 }
 
-DenseSource openItk(const std::filesystem::path& file) {
-    return medicalModule().openItk(file);
-}
-
 std::vector<DicomSeries> findSeries(const std::filesystem::path& input,
                                     const std::vector<std::filesystem::path>& files) {
     return medicalModule().findSeries(input, files);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optics/label_function.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace deltasplat {
 
 TransferFunction labelFunction(const std::vector<LabelLook>& looks) {
@@ -25,6 +28,23 @@ TransferFunction labelFunction(const std::vector<LabelLook>& looks) {
         opacities.push_back({end, 0, 0.5, 0});
     }
     return function;
+}
+
+TransferFunction withColors(const TransferFunction& function, const LabelList& labels) {
+    TransferFunction colored = function;
+    for (const LabelEntry& label : labels.entries) {
+        if (!label.rgb) continue;
+        // Each label has a colour at either end.
+        const auto begin = std::ranges::lower_bound(colored.colors, double(label.value) - 0.5, {},
+                                                    &TransferFunction::ColorPoint::x);
+        if (std::distance(begin, colored.colors.end()) < 2 || begin->x != double(label.value) - 0.5)
+            continue;
+        // The end of the label before lies at the same place.
+        const auto own = begin[1].x == begin->x ? begin + 1 : begin;
+        if (std::distance(colored.colors.begin(), own) % 2 != 0) continue;
+        own[0].rgb = own[1].rgb = *label.rgb;
+    }
+    return colored;
 }
 
 std::vector<LabelLook> looksOf(const TransferFunction& function) {

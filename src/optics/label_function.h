@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "deltasplat/ingest/label_list.h"
 #include "deltasplat/optics/transfer_function.h"
 
 namespace deltasplat {
@@ -20,6 +21,9 @@ struct LabelLook {
 /// its neighbours, all others are clear. It is categorical.
 /// @param looks  at least one, labels rising
 TransferFunction labelFunction(const std::vector<LabelLook>& looks);
+
+/// Returns such a function with the colours that a file gives labels, of those that both have.
+TransferFunction withColors(const TransferFunction& function, const LabelList& labels);
 
 /// Returns the looks of which labelFunction made a function.
 std::vector<LabelLook> looksOf(const TransferFunction& function);

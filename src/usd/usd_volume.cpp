@@ -128,11 +128,9 @@ class UsdVolumeReader {
             fail(line, value.quoted() + " for filePath", "@FILE.vdb@");
         const std::filesystem::path given = value.text;
         if (given.extension() != ".vdb") fail(line, value.quoted() + " for filePath", "a .vdb");
-        // USD takes names apart by their text, whatever folders are links; what is looked at is
-        // what is opened.
-        const std::filesystem::path file = (layer_.file.parent_path() / given).lexically_normal();
+        const std::filesystem::path file = layer_.file.parent_path() / given;
         requireConfined(layer_.file, file);
-        return file;
+        return file.lexically_normal();
     }
 
     UsdLayer layer_;

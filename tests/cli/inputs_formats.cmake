@@ -33,22 +33,13 @@ deltasplat_cli_test(formats.confine.inside ARGS info stack.\#.pgm --confine
     STDOUT_MATCHES "dims +3 x 2 x 2")
 deltasplat_cli_test(formats.to_npy ARGS convert stack.\#.pgm out.npy CREATES out.npy)
 
-if(DELTASPLAT_ITK)
-    deltasplat_cli_test(formats.nrrd ARGS info text.nrrd
-        STDOUT_MATCHES "grid +text.*type +int16.*dims +2 x 3 x 4.*voxel size +1 x 2 x 3")
-    deltasplat_cli_test(formats.unused_spacing ARGS info text.nrrd --spacing 1,1,1
-        STDERR "deltasplat: warning: --spacing: has no effect without an input of raw values or images"
-        STDOUT_MATCHES "voxel size +1 x 2 x 3")
-    deltasplat_bad_input(nrrd_sizes
-        "negative.nrrd: got sizes 2 -3 4; expected whole numbers from 1 to 1073741824"
-        negative.nrrd)
-    deltasplat_bad_input(meta_data
-        "no_data.mhd: got no data file \"nowhere.raw\"; expected a readable file" no_data.mhd)
-else()
-    foreach(file text.nrrd no_data.mhd)
-        string(REGEX REPLACE "^.*\\." "." extension ${file})
-        deltasplat_bad_input(without_itk${extension}
-            "${file}: got extension \"${extension}\"; expected a build with DELTASPLAT_ITK=ON to read NRRD, MetaImage and DICOM"
-            ${file})
-    endforeach()
-endif()
+deltasplat_cli_test(formats.nrrd ARGS info text.nrrd
+    STDOUT_MATCHES "grid +text.*type +int16.*dims +2 x 3 x 4.*voxel size +1 x 2 x 3")
+deltasplat_cli_test(formats.unused_spacing ARGS info text.nrrd --spacing 1,1,1
+    STDERR "deltasplat: warning: --spacing: has no effect without an input of raw values or images"
+    STDOUT_MATCHES "voxel size +1 x 2 x 3")
+deltasplat_bad_input(nrrd_sizes
+    "negative.nrrd: got sizes 2 -3 4; expected whole numbers from 1 to 1073741824"
+    negative.nrrd)
+deltasplat_bad_input(meta_data
+    "no_data.mhd: got no data file \"nowhere.raw\"; expected a readable file" no_data.mhd)

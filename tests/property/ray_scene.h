@@ -28,10 +28,12 @@ inline TestView viewOf(const Volume& volume, const glm::dvec3& direction) {
     return view;
 }
 
-inline RenderOptions optionsOf(Mode mode, const TestView& view) {
+/// With an x-ray's footprint of a single pixel, unless `sigma` says otherwise.
+inline RenderOptions optionsOf(Mode mode, const TestView& view, double sigma = 0.2) {
     RenderOptions options;
     options.mode = mode;
     options.camera = view.options();
+    if (mode == Mode::kXray) options.sigma = sigma;
     return options;
 }
 

@@ -103,7 +103,7 @@ TEST(ScaleBar, IsAsLongAsItIsSeen) {
         options.azimuthDegrees = 17;
         options.sizePixels = {640, 400};
         const Camera camera = cameraOf(options);
-        const ScaleBar bar = scaleBarOf(camera, "RAS");
+        const ScaleBar bar = scaleBarOf(camera, "mm");
         const glm::dvec2 seen =
             camera.pixelFromWorld(camera.targetWorld + bar.lengthWorld * camera.right) -
             camera.pixelFromWorld(camera.targetWorld);
@@ -127,12 +127,25 @@ TEST(ScaleBar, SaysItsUnitAndWhereItHolds) {
     CameraOptions options;
     options.frameWidthWorld = 100;
     EXPECT_EQ(scaleBarOf(cameraOf(options), "").label, "20 units");
-    EXPECT_EQ(scaleBarOf(cameraOf(options, "LPS"), "LPS").label, "20 mm");
+    EXPECT_EQ(scaleBarOf(cameraOf(options, "LPS"), "mm").label, "20 mm");
     options.frameWidthWorld = 1;
     EXPECT_EQ(scaleBarOf(cameraOf(options), "").label, "0.2 units");
+    // Known lengths in units of which there is one or more.
+    for (const auto& [frame, unit, label] : {std::tuple{1.0, "mm", "200 um"},
+                                             {1e-3, "mm", "200 nm"},
+                                             {1.0, "um", "200 nm"},
+                                             {100.0, "um", "20 um"},
+                                             {4e4, "um", "10000 um"},
+                                             {0.4, "m", "100 mm"},
+                                             {1.0, "cm", "2 mm"},
+                                             {4.0, "in", "1 in"},
+                                             {1e-9, "mm", "2e-10 mm"}}) {
+        options.frameWidthWorld = frame;
+        EXPECT_EQ(scaleBarOf(cameraOf(options), unit).label, label) << frame << " " << unit;
+    }
     CameraOptions eye;
     eye.projection = Projection::kPerspective;
-    EXPECT_TRUE(scaleBarOf(cameraOf(eye), "RAS").label.ends_with(" mm at target"));
+    EXPECT_TRUE(scaleBarOf(cameraOf(eye), "mm").label.ends_with(" mm at target"));
 }
 
 TEST(Axes, HaveThePatientsLetters) {
@@ -241,8 +254,8 @@ TEST(Annotations, LeaveThePictureAroundThemAlone) {
     for (const glm::ivec2 size : {glm::ivec2(256), glm::ivec2(512, 300), glm::ivec2(700, 1200)}) {
         for (const Legend& legend : {someScale(), labelsOf(3), labelsOf(1000)}) {
             Warnings warnings;
-            const auto annotations = layOut(choice, cameraOf("iso", "LPS", size), "LPS", legend,
-                                            kInkOnDark, warnings.listener());
+            const auto annotations = layOut(choice, cameraOf("iso", "LPS", size), "LPS", "mm",
+                                            legend, kInkOnDark, warnings.listener());
             ASSERT_EQ(annotations.size(), 4u);
             EXPECT_TRUE(warnings.lines.empty());
             Image before(size);
@@ -275,7 +288,7 @@ TEST(Annotations, AreLeftOutWhereThereIsNoRoom) {
     for (const int side : {1, 20, 40, 60, 95}) {
         Warnings warnings;
         std::set<std::string> placed;
-        for (const Annotation& a : layOut(choice, cameraOf("iso", "", glm::ivec2(side)), "",
+        for (const Annotation& a : layOut(choice, cameraOf("iso", "", glm::ivec2(side)), "", "",
                                           someScale(), kInkOnDark, warnings.listener()))
             placed.insert(a.option);
         for (const char* const option : {"--legend", "--scale-bar", "--axes", "--annotate"})
@@ -288,7 +301,7 @@ TEST(Annotations, LongTextIsShortened) {
     const std::string text(300, 'w');
     Warnings warnings;
     const auto annotations = layOut({true, false, false, {text, "short"}}, cameraOf("front"), "",
-                                    someScale(), kInkOnDark, warnings.listener());
+                                    "", someScale(), kInkOnDark, warnings.listener());
     ASSERT_EQ(annotations.size(), 2u);
     EXPECT_LE(annotations[1].box.max.x, annotations[0].box.min.x);
     EXPECT_GT(annotations[1].box.max.x, annotations[0].box.min.x - 40);
@@ -296,7 +309,7 @@ TEST(Annotations, LongTextIsShortened) {
     // More lines than there is room for.
     Warnings many;
     const auto lines = layOut({false, false, false, std::vector<std::string>(100, "line")},
-                              cameraOf("front"), "", {}, kInkOnDark, many.listener());
+                              cameraOf("front"), "", "", {}, kInkOnDark, many.listener());
     ASSERT_EQ(lines.size(), 1u);
     EXPECT_TRUE(many.name("--annotate"));
 }

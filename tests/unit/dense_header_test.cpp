@@ -7,13 +7,15 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "convert/dense_layout.h"
+#include "deltasplat/ingest/label_list.h"
 #include "unit/convert_helpers.h"
 
 namespace deltasplat::testing {
 namespace {
 
-DenseLayout layout(const std::string& space) {
+DenseLayout layout(const std::string& space, const std::string& unit = "") {
     DenseLayout layout;
+    layout.lengthUnit = unit;
     layout.dims = {3, 4, 5};
     layout.type = RawType::kInt16;
     layout.worldFromIndex = {{0, 2, 0, 0}, {-0.5, 0, 0, 0}, {0, 0, -1.25, 0}, {10, -20, 0.1, 1}};
@@ -38,6 +40,9 @@ TEST(DenseHeader, Nrrd) {
     EXPECT_NE(nrrdHeader(layout("LPS"), "").find("space: left-posterior-superior\n"),
               std::string::npos);
     EXPECT_NE(nrrdHeader(layout(""), "").find("space dimension: 3\n"), std::string::npos);
+    EXPECT_NE(nrrdHeader(layout("", "um"), "")
+                  .find("space dimension: 3\nspace units: \"um\" \"um\" \"um\"\n"),
+              std::string::npos);
 }
 
 TEST(DenseHeader, MetaImage) {
@@ -80,14 +85,59 @@ TEST(DenseHeader, Nifti) {
     EXPECT_EQ(at<float>(bytes, 108), 352);  // where the values begin
     EXPECT_EQ(at<float>(bytes, 112), 1);    // slope
     EXPECT_EQ(at<float>(bytes, 116), 0);    // intercept
-    EXPECT_EQ(at<char>(bytes, 123), 2);     // millimetres
+    EXPECT_EQ(at<char>(bytes, 123), 0);     // the unit is not known
     EXPECT_EQ(at<std::int16_t>(bytes, 252), 1);
     EXPECT_EQ(at<std::int16_t>(bytes, 254), 1);
     const float rows[] = {0, -0.5, 0, 10, 2, 0, 0, -20, 0, 0, -1.25, 0.1F};
     for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(at<float>(bytes, 280 + 4 * i), rows[i]);
     EXPECT_EQ(bytes.substr(344, 4), std::string("n+1\0", 4));
     EXPECT_EQ(at<std::int32_t>(bytes, 348), 0);  // no extensions
-    EXPECT_EQ(niftiHeader(layout(""), "")[123], 0);
+    EXPECT_EQ(niftiHeader(layout("RAS", "mm"), "")[123], 2);
+    EXPECT_EQ(at<std::int16_t>(bytes, 68), 0);  // no intent
+    DenseLayout labels = layout("RAS");
+    labels.labels = std::make_shared<const LabelList>();
+    EXPECT_EQ(at<std::int16_t>(niftiHeader(labels, ""), 68), 1002);
+}
+
+// Other programs take lengths in NIfTI and MetaImage for millimetres, whatever the header says.
+TEST(DenseHeader, LengthsAreMillimetres) {
+    WriteReport report;
+    Notes notes(report, "a");
+    for (const auto& [unit, factor] : {std::pair{"um", 1e-3}, {"m", 1e3}, {"nm", 1e-6}}) {
+        for (auto* const settle : {settleNifti, settleMetaImage}) {
+            DenseLayout one = layout("", unit);
+            const glm::dvec3 size = one.spacing(), place = one.origin();
+            settle(one, "a", notes);
+            EXPECT_EQ(one.lengthUnit, "mm");
+            for (int axis = 0; axis < 3; ++axis) {
+                EXPECT_DOUBLE_EQ(one.spacing()[axis], factor * size[axis]);
+                EXPECT_DOUBLE_EQ(one.origin()[axis], factor * place[axis]);
+            }
+        }
+    }
+    EXPECT_NE(metaImageHeader(layout("LPS", "mm"), "").find("DistanceUnits = mm\n"),
+              std::string::npos);
+    DenseLayout unknown = layout("");
+    settleNifti(unknown, "a", notes);
+    EXPECT_EQ(unknown.worldFromIndex, layout("").worldFromIndex);
+}
+
+// Segments as 3D Slicer reads them.
+TEST(DenseHeader, NrrdSegments) {
+    DenseLayout labels = layout("LPS");
+    labels.labels = std::make_shared<const LabelList>(
+        LabelList{{{3, "liver, left\nlobe", glm::dvec3(0.5, 0.25, 1)}, {12, "", {}}}});
+    const std::string text = nrrdHeader(labels, "");
+    for (const char* const line :
+         {"Segment0_ID:=Segment_1\n", "Segment0_Name:=liver, left\\nlobe\n",
+          "Segment0_Color:=0.5 0.25 1\n", "Segment0_LabelValue:=3\n", "Segment0_Layer:=0\n",
+          "Segment0_Extent:=0 2 0 3 0 4\n", "Segment1_LabelValue:=12\n", "Segment1_Name:=\n",
+          "Segmentation_MasterRepresentation:=Binary labelmap\n"})
+        EXPECT_NE(text.find(line), std::string::npos) << line;
+    EXPECT_EQ(text.find("Segment1_Color"), std::string::npos);
+    labels.labels = std::make_shared<const LabelList>();
+    EXPECT_NE(nrrdHeader(labels, "").find("\nintent_code:=1002\n"), std::string::npos);
+    EXPECT_NE(metaImageHeader(labels, "").find("\nintent_code = 1002\n"), std::string::npos);
 }
 
 // What is beyond floats would become infinite, or nothing.

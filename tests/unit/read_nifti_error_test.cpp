@@ -40,8 +40,6 @@ TEST(ReadNiftiError, NoHeader) {
     expectRefused("b.nii: got 347 bytes; expected a whole NIfTI header", "b.nii");
     writeGzip("c.nii.gz", "");
     expectRefused("c.nii.gz: " + message, "c.nii.gz");
-    writeBytes("d.nii.gz", sample().bytes());
-    expectRefused("d.nii.gz: got no gzip stream; expected a gzip file", "d.nii.gz");
 }
 
 TEST(ReadNiftiError, PairOfFiles) {
@@ -49,9 +47,22 @@ TEST(ReadNiftiError, PairOfFiles) {
     NiftiFile file = sample();
     file.magic = "ni1";
     writeBytes("a.nii", file.bytes());
+    expectRefused("a.nii: got no .img file beside it; expected both files of a NIfTI pair",
+                  "a.nii");
+    writeBytes("b.hdr", file.bytes().substr(0, 348));
+    expectRefused("b.hdr: got no .img file beside it; expected both files of a NIfTI pair",
+                  "b.hdr");
+    writeBytes("c.img", file.data);
+    expectRefused("c.img: got no .hdr file beside it; expected both files of a NIfTI pair",
+                  "c.img");
+    // Analyze knows no orientation.
+    writeBytes("c.hdr", file.bytes().substr(0, 344) + std::string(4, '\0'));
     expectRefused(
-        "a.nii: got the header of a .hdr and .img pair; expected a NIfTI file in one piece",
-        "a.nii");
+        "c.hdr: got a header of Analyze 7.5, which does not say where the patient lies; expected a "
+        "NIfTI-1 or NIfTI-2 file or pair",
+        "c.img");
+    writeBytes("b.img", file.data.substr(0, 40));
+    expectRefused("b.img: got 40 bytes; expected at least 48 (4x3x2 int16)", "b.hdr");
 }
 
 TEST(ReadNiftiError, Dims) {
@@ -59,18 +70,12 @@ TEST(ReadNiftiError, Dims) {
     expectRefusedWith("got dims 4x-3x2; expected each 1..1073741824", [](NiftiFile& file) {
         file.dims = {4, -3, 2};
     });
-    expectRefusedWith("got dims 4x3x0; expected each 1..1073741824", [](NiftiFile& file) {
-        file.dims = {4, 3, 0};
-    });
     expectRefusedWith("got 2 volumes (dims 2x3x2x2); expected one, chosen by `volume` 0 to 1",
                       [](NiftiFile& file) {
                           file.dims = {2, 3, 2, 2};
                       });
     expectRefusedWith("got dims 4x3x2x-5; expected each 1..1073741824", [](NiftiFile& file) {
         file.dims = {4, 3, 2, -5};
-    });
-    expectRefusedWith("got dims 4x3x2x0; expected each 1..1073741824", [](NiftiFile& file) {
-        file.dims = {4, 3, 2, 0};
     });
     expectRefusedWith("got 0 dimensions; expected 1 to 7 of them",
                       [](NiftiFile& file) { file.dims = {}; });
@@ -191,31 +196,11 @@ TEST(ReadNiftiError, PlaceOfTheData) {
 TEST(ReadNiftiError, NoPlaceInTheWorld) {
     const TempFolder folder;
     expectRefusedWith(
-        "got an sform that cannot be inverted; expected finite numbers that give each voxel a "
-        "place of its "
-        "own",
-        [](NiftiFile& file) { file.sform[0] = std::nan(""); });
-    expectRefusedWith(
-        "got an sform that cannot be inverted; expected finite numbers that give each voxel a "
-        "place of its "
-        "own",
-        [](NiftiFile& file) { file.sform.assign(12, 0); });
-    expectRefusedWith(
-        "got a qform that cannot be inverted; expected finite numbers that give each voxel a place "
-        "of its "
-        "own",
-        [](NiftiFile& file) {
-            file.sformCode = 0;
-            file.qformCode = 1;
-            file.quaternion[1] = INFINITY;
-        });
-    expectRefusedWith(
         "got a voxel size that cannot be inverted; expected finite numbers that give each voxel a "
-        "place of its "
-        "own",
+        "place of its own",
         [](NiftiFile& file) {
             file.sformCode = 0;
-            file.pixelSizes[2] = 0;
+            file.pixelSizes[2] = NAN;
         });
 }
 

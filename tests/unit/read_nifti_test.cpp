@@ -190,18 +190,154 @@ TEST(ReadNifti, WithoutQformAndSform) {
                                        "known, not where the volume lies or which side is left"});
 }
 
+// A patient's space is in millimetres; without one, lengths are what the file says.
 TEST(ReadNifti, Units) {
     const TempFolder folder;
-    for (const int version : {1, 2}) {
-        for (const bool bigEndian : {false, true}) {
-            NiftiFile file = sample(version, bigEndian);
-            file.units = 3 + 8;  // micrometres, seconds
-            Warnings warnings;
-            EXPECT_EQ(read(file, warnings.listener()).voxelSize(), glm::dvec3(2, 3, 4));
-            EXPECT_EQ(warnings.lines,
-                      std::vector<std::string>{"a.nii: lengths are in micrometres, and stay so"});
+    const std::string turned = ", and are turned into millimetres";
+    for (const auto& [code, factor, unit, line] :
+         {std::tuple{1, 1e3, "m", "a.nii: lengths are in metres" + turned},
+          {2, 1.0, "mm", std::string()},
+          {3, 1e-3, "um", "a.nii: lengths are in micrometres" + turned},
+          {0, 1.0, "", std::string()}}) {
+        for (const int version : {1, 2}) {
+            for (const bool bigEndian : {false, true}) {
+                NiftiFile file = sample(version, bigEndian);
+                file.units = code + 8;  // seconds
+                writeBytes("a.nii", file.bytes());
+                Warnings warnings;
+                const Volume volume = readVolume("a.nii", {}, warnings.listener());
+                EXPECT_EQ(volume.lengthUnit, code == 0 ? "" : "mm");
+                const glm::dmat4 world(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1);
+                for (int i = 0; i < 16; ++i) {
+                    const double wanted = i == 15 ? 1 : factor * world[i / 4][i % 4];
+                    EXPECT_DOUBLE_EQ(volume.worldFromIndex[i / 4][i % 4], wanted) << unit;
+                }
+                EXPECT_EQ(warnings.lines, line.empty() ? std::vector<std::string>()
+                                                       : std::vector<std::string>{line});
+                file.sformCode = 0;
+                writeBytes("b.nii", file.bytes());
+                EXPECT_EQ(readVolume("b.nii").lengthUnit, unit);
+                EXPECT_EQ(readVolume("b.nii").voxelSize(), glm::dvec3(2, 3, 4));
+            }
         }
     }
+}
+
+// A form that gives voxels no place is as none: the other counts, else voxel sizes do.
+TEST(ReadNifti, FormsWithoutPlaces) {
+    const TempFolder folder;
+    const auto warned = [](const NiftiFile& file) {
+        writeBytes("a.nii", file.bytes());
+        Warnings warnings;
+        const Volume volume = readVolume("a.nii", {}, warnings.listener());
+        return std::pair{volume, warnings.lines};
+    };
+    const std::string neither =
+        "a.nii: neither sform nor qform: only the voxel size is known, not where the volume lies "
+        "or which side is left";
+    for (const std::vector<double>& sform : {std::vector<double>(12, 0),
+                                             {1, 0, 0, 5, 2, 0, 0, 5, 0, 0, 4, 5},
+                                             {NAN, 0, 0, 10, 0, 3, 0, 20, 0, 0, 4, 30}}) {
+        NiftiFile file = sample();
+        file.sform = sform;
+        file.qformCode = 1;
+        file.quaternion = {0, 0, 0, 7, 8, 9};
+        auto [volume, lines] = warned(file);
+        EXPECT_EQ(volume.space, "RAS");
+        EXPECT_EQ(volume.worldFromIndex,
+                  glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 7, 8, 9, 1));
+        EXPECT_EQ(lines, std::vector<std::string>{
+                             "a.nii: the sform gives voxels no place; the qform is taken"});
+        file.qformCode = 0;
+        std::tie(volume, lines) = warned(file);
+        EXPECT_EQ(volume.space, "");
+        EXPECT_EQ(volume.voxelSize(), glm::dvec3(2, 3, 4));
+        EXPECT_EQ(lines,
+                  (std::vector<std::string>{
+                      "a.nii: the sform gives voxels no place; the voxel size is taken", neither}));
+    }
+    NiftiFile file = sample();
+    file.sformCode = 0;
+    file.qformCode = 1;
+    file.quaternion[1] = INFINITY;
+    const auto [volume, lines] = warned(file);
+    EXPECT_EQ(volume.space, "");
+    EXPECT_EQ(volume.voxelSize(), glm::dvec3(2, 3, 4));
+    EXPECT_EQ(lines,
+              (std::vector<std::string>{
+                  "a.nii: the qform gives voxels no place; the voxel size is taken", neither}));
+}
+
+// A count of 0 is 1, as is a size of 0; a single slice has a thickness.
+TEST(ReadNifti, ZerosAreOnes) {
+    const TempFolder folder;
+    NiftiFile file = sample();
+    for (const std::vector<int>& dims :
+         {std::vector<int>{4, 6, 0}, {4, 6, 0, 0}, {4, 6, 1, 0, 0}}) {
+        file.dims = dims;
+        writeBytes("a.nii", file.bytes());
+        EXPECT_EQ(readVolume("a.nii").box.dims(), glm::ivec3(4, 6, 1));
+    }
+    // One slice, whose header leaves out what lies across it.
+    for (const auto& [dims, thickness, wanted] : {std::tuple{std::vector<int>{4, 6}, 0.0, 1.0},
+                                                  {std::vector<int>{4, 6}, 2.5, 2.5},
+                                                  {std::vector<int>{4, 6, 1}, 0.0, 1.0}}) {
+        for (const bool bySform : {false, true}) {
+            file.dims = dims;
+            file.sformCode = bySform ? 1 : 0;
+            file.qformCode = bySform ? 0 : 1;
+            file.pixelSizes = {1, 0.5, 0.25, thickness, 0, 0, 0, 0};
+            // x to the back, y up: the slice lies across from left to right.
+            file.sform = {0, 0, 0, 10, 0.5, 0, 0, 20, 0, 0.25, 0, 30};
+            writeBytes("b.nii", file.bytes());
+            Warnings warnings;
+            const Volume volume = readVolume("b.nii", {}, warnings.listener());
+            EXPECT_EQ(volume.voxelSize(), glm::dvec3(0.5, 0.25, wanted));
+            EXPECT_EQ(volume.space, "RAS");
+            EXPECT_EQ(warnings.lines, std::vector<std::string>());
+            if (!bySform) continue;
+            EXPECT_EQ(glm::dvec3(volume.worldFromIndex[2]), glm::dvec3(wanted, 0, 0));
+        }
+    }
+}
+
+// A pair is read by either name, and each file may be packed.
+TEST(ReadNifti, Pairs) {
+    const TempFolder folder;
+    for (const int version : {1, 2}) {
+        NiftiFile file = sample(version);
+        file.magic = version == 1 ? "ni1" : std::string("ni2\0\r\n\x1a\n", 8);
+        const std::string data = file.data;
+        file.data.clear();
+        std::string header = file.bytes();
+        // Where data begin in their file.
+        std::fill_n(header.begin() + (version == 1 ? 108 : 168), version == 1 ? 4 : 8, '\0');
+        writeBytes("a.hdr", header.substr(0, version == 1 ? 348 : 540));
+        writeBytes("a.img", data);
+        writeGzip("b.hdr.gz", header);
+        writeGzip("b.img.gz", data);
+        writeBytes("C.HDR", header);
+        writeGzip("C.IMG", data);
+        for (const char* const name :
+             {"a.hdr", "a.img", "b.hdr.gz", "b.img.gz", "C.HDR", "C.IMG"}) {
+            const Volume volume = readVolume(name);
+            EXPECT_EQ(volume.name, std::string(1, name[0])) << name;
+            EXPECT_EQ(valuesOf(volume), kRamp) << name;
+            EXPECT_EQ(volume.space, "RAS");
+        }
+    }
+    // One piece, whatever it is called.
+    writeBytes("d.hdr", sample().bytes());
+    EXPECT_EQ(valuesOf(readVolume("d.hdr")), kRamp);
+}
+
+// Packed or plain is what the bytes are, not what the name says.
+TEST(ReadNifti, PackedByContent) {
+    const TempFolder folder;
+    writeGzip("a.nii", sample().bytes());
+    writeBytes("b.nii.gz", sample().bytes());
+    for (const char* const name : {"a.nii", "b.nii.gz"})
+        EXPECT_EQ(valuesOf(readVolume(name)), kRamp) << name;
 }
 
 TEST(ReadNifti, OneTwoAndFourDimensions) {

@@ -53,9 +53,8 @@ TEST(ReadRawError, UnknownExtension) {
     writeBytes("a.tar.gz", "");
     writeBytes("a", "");
     const std::string readable =
-        "; expected .vdb, .raw, .raw.gz, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .dcm, "
-        ".tif, "
-        ".png, .jpg, .bmp, .pgm or .exr";
+        "; expected .vdb, .raw, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .hdr, .img (all of these "
+        "also with .gz), .dcm, .tif, .png, .jpg, .bmp, .pgm or .exr";
     expectInput("a.xyz: got extension \".xyz\"" + readable, "a.xyz");
     expectInput("a.tar.gz: got extension \".tar.gz\"" + readable, "a.tar.gz");
     expectInput("a: got extension \"\"" + readable, "a");

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volumes in formats without empty places: there and back by this project's readers, whose bytes of
-// NRRD and MetaImage ITK understands.
+// Volumes in formats without empty places: there and back by this project's readers.
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "deltasplat/convert/write_volume.h"
+#include "deltasplat/delta/delta_file.h"
+#include "deltasplat/ingest/label_list.h"
 #include "ingest/grids/tree_types.h"
+#include "length_unit.h"
 #include "unit/convert_helpers.h"
 #include "unit/vdb_helpers.h"
 
@@ -18,11 +20,7 @@ constexpr glm::ivec3 kDims(19, 17, 10);
 
 // The formats whose files can be read back without being told what they are.
 std::vector<std::string> formats() {
-    std::vector<std::string> names = {".nii", ".nii.gz"};
-#ifdef DELTASPLAT_ITK
-    for (const char* const name : {".nrrd", ".nhdr", ".mhd", ".mha"}) names.emplace_back(name);
-#endif
-    return names;
+    return {".nii", ".nii.gz", ".nrrd", ".nhdr", ".mhd", ".mha"};
 }
 
 double valueAt(const Volume& volume, const glm::ivec3& place) {
@@ -153,11 +151,8 @@ TEST(WriteDense, ChainsOfFormatsKeepTheAffine) {
     std::string file = "a.nii";
     EXPECT_TRUE(write(file, volume).lossless);
     int step = 0;
-    std::vector<std::string> chain = {".vdb", ".nii.gz"};
-#ifdef DELTASPLAT_ITK
-    chain.insert(chain.end(), {".nrrd", ".nii", ".mha", ".vdb", ".nii"});
-#endif
-    for (const std::string& extension : chain) {
+    for (const std::string extension :
+         {".vdb", ".nii.gz", ".nrrd", ".nii", ".mha", ".vdb", ".nii"}) {
         const std::string next = "step" + std::to_string(step++) + extension;
         write(next, readKept(file));
         file = next;
@@ -165,6 +160,93 @@ TEST(WriteDense, ChainsOfFormatsKeepTheAffine) {
         SCOPED_TRACE(next);
         EXPECT_EQ(readVolume(next).worldFromIndex, volume.worldFromIndex);
     }
+}
+
+// Returns where a voxel lies, in millimetres left, back and up of the patient or in its own space.
+glm::dvec3 placeOf(const Volume& volume, const glm::ivec3& voxel) {
+    const glm::dvec3 place(volume.worldFromIndex * glm::dvec4(voxel, 1));
+    const double unit = volume.lengthUnit.empty() ? 1 : millimetresIn(volume.lengthUnit);
+    return unit * (volume.space == "RAS" ? glm::dvec3(-place.x, -place.y, place.z) : place);
+}
+
+// Wherever a volume goes, its voxels stay where they are in the world, and lengths whose unit is
+// known stay known.
+TEST(WriteDense, UnitsComeBack) {
+    const std::vector<std::uint8_t> values = pattern<std::uint8_t>(kDims, 0, 9);
+    for (const std::string space : {"", "RAS", "LPS"}) {
+        for (const std::string unit : {"", "mm", "um", "nm", "m", "in"}) {
+            if (!space.empty() && !unit.empty() && unit != "mm") continue;
+            Volume volume = rawVolume(values, kDims, "uint8", {0.5, 1.25, 2}, {-3, 4.5, 8});
+            volume.space = space;
+            volume.lengthUnit = unit;
+            for (const std::string extension : {".vdb", ".nii", ".nrrd", ".nhdr", ".mhd", ".mha"}) {
+                SCOPED_TRACE(space + " " + unit + " " + extension);
+                const TempFolder folder;
+                write("a" + extension, volume);
+                // Through a grid, and its delta grids.
+                write("b.vdb", readKept("a" + extension));
+                DeltaFile deltas;
+                deltas.add(readKept("b.vdb"), {});
+                deltas.write("c.vdb");
+                write("d" + extension, readKept("c.vdb"));
+                for (const std::string& file : {"a" + extension, std::string("b.vdb"),
+                                                std::string("c.vdb"), "d" + extension}) {
+                    const Volume back = readVolume(file);
+                    EXPECT_EQ(back.lengthUnit.empty(), unit.empty()) << file;
+                    if (extension == ".vdb") {
+                        EXPECT_EQ(back.lengthUnit, unit);
+                    }
+                    for (const glm::ivec3 voxel : {glm::ivec3(0), glm::ivec3(18, 16, 9)}) {
+                        const glm::dvec3 place = placeOf(back, voxel), was = placeOf(volume, voxel);
+                        const double size = glm::length(was);
+                        for (int axis = 0; axis < 3; ++axis)
+                            EXPECT_NEAR(place[axis], was[axis], 1e-6 * size) << file;
+                    }
+                }
+            }
+        }
+    }
+}
+
+// Names and colours of labels survive wherever a format has a place for them, and that values are
+// labels in all that have a header for it.
+TEST(WriteDense, LabelsComeBack) {
+    const std::vector<std::uint8_t> values = pattern<std::uint8_t>(kDims, 0, 9);
+    const std::vector<LabelEntry> named{{3, "liver, left lobe", glm::dvec3(0.5, 0.25, 1)},
+                                        {9, "bone \\n", {}}};
+    for (const std::vector<LabelEntry>& entries : {named, std::vector<LabelEntry>()}) {
+        Volume volume = rawVolume(values, kDims, "uint8");
+        volume.space = "LPS";
+        volume.labels = std::make_shared<const LabelList>(LabelList{entries});
+        for (const std::string extension : {".vdb", ".nrrd", ".nii", ".mha"}) {
+            SCOPED_TRACE(extension);
+            const TempFolder folder;
+            const bool holdsNames = extension == ".vdb" || extension == ".nrrd";
+            const WriteReport report = write("a" + extension, volume);
+            EXPECT_EQ(report.lossless, holdsNames || entries.empty());
+            write("b.vdb", readKept("a" + extension));
+            DeltaFile deltas;
+            deltas.add(readKept("b.vdb"), {});
+            deltas.write("c.vdb");
+            write("d.seg.nrrd", readKept("c.vdb"));
+            for (const std::string& file : {"a" + extension, std::string("b.vdb"),
+                                            std::string("c.vdb"), std::string("d.seg.nrrd")}) {
+                const Volume back = readVolume(file);
+                ASSERT_TRUE(back.labels) << file;
+                EXPECT_EQ(back.labels->entries, holdsNames ? entries : std::vector<LabelEntry>())
+                    << file;
+            }
+        }
+    }
+    const TempFolder folder;
+    Volume volume = rawVolume(values, kDims, "uint8");
+    volume.labels = std::make_shared<const LabelList>(LabelList{named});
+    EXPECT_EQ(write("out.nii", volume).notes.back(),
+              "out.nii: names and colours of labels are left out: NIfTI has no place for them "
+              "(.vdb and .seg.nrrd have)");
+    EXPECT_EQ(write("out.npy", volume).notes.back(),
+              "out.npy: names and colours of labels, and that values are labels are left out: "
+              "NumPy's format has no place for them (.vdb and .seg.nrrd have)");
 }
 
 openvdb::FloatGrid::Ptr sparseGrid(float background) {

@@ -7,7 +7,9 @@
 #include <random>
 
 #include "deltasplat/convert/write_volume.h"
+#include "deltasplat/delta/delta_file.h"
 #include "ingest/grids/tree_types.h"
+#include "length_unit.h"
 #include "unit/convert_helpers.h"
 #include "unit/format_helpers.h"
 #include "unit/vdb_compare.h"
@@ -140,9 +142,41 @@ TEST(WriteGrids, PlacesAreExact) {
 
     volume.worldFromIndex = glm::scale(glm::dmat4(1), glm::dvec3(1e-20, 1, 1));
     expectError(ErrorCode::kFailed,
-                "voxel size: got 1e-20,1,1; expected a volume of at least 3e-15, as .vdb has it "
-                "(other units?)",
+                "voxel size: got 1e-20,1,1 without a unit of length; expected a volume of at least "
+                "3e-15, as OpenVDB's grids have it (.nrrd has no such limit)",
                 [&] { write("out.vdb", volume); });
+}
+
+// What OpenVDB takes for flat is kept in a smaller unit, if there is one; a patient's space is in
+// millimetres again when it is read.
+TEST(WriteGrids, SmallVoxelsComeBack) {
+    for (const auto& [space, unit, kept] :
+         {std::tuple{"", "mm", "um"}, {"", "m", "mm"}, {"LPS", "mm", "mm"}}) {
+        for (const double size : {1e-5, 1e-6}) {
+            for (const bool deltas : {false, true}) {
+                SCOPED_TRACE(std::string(space) + unit + std::to_string(size * 1e6));
+                const TempFolder folder;
+                Volume volume = rawVolume(pattern<float>(kDims, 0, 9), kDims, "float32",
+                                          glm::dvec3(size), {3 * size, 0, 0});
+                EXPECT_EQ(volume.voxelSize(), glm::dvec3(size));
+                volume.space = space;
+                volume.lengthUnit = unit;
+                if (deltas) {
+                    DeltaFile file;
+                    file.add(volume, {});
+                    file.write("out.vdb");
+                } else {
+                    write("out.vdb", volume);
+                }
+                const Volume back = readKept("out.vdb");
+                EXPECT_EQ(back.lengthUnit, kept);
+                const double factor = millimetresIn(unit) / millimetresIn(kept);
+                for (int axis = 0; axis < 3; ++axis)
+                    EXPECT_NEAR(back.voxelSize()[axis], factor * size, 1e-12 * factor * size);
+                EXPECT_NEAR(back.worldFromIndex[3].x, factor * 3 * size, 1e-12 * factor * size);
+            }
+        }
+    }
 }
 
 TEST(WriteGrids, TheSpaceComesBack) {

@@ -54,8 +54,9 @@ class Corners {
 }  // namespace
 
 std::vector<Annotation> layOut(const AnnotationChoice& choice, const Camera& camera,
-                               const std::string& space, const std::optional<Legend>& legend,
-                               const InkColors& colors, const Listener& listener) {
+                               const std::string& space, const std::string& unit,
+                               const std::optional<Legend>& legend, const InkColors& colors,
+                               const Listener& listener) {
     const AnnotationStyle style(camera.sizePixels, colors);
     Corners corners(style, listener);
     if (choice.legend && legend) corners.add(drawLegend(*legend, style));
@@ -65,7 +66,7 @@ std::vector<Annotation> layOut(const AnnotationChoice& choice, const Camera& cam
         if (corners.add(drawTextLines(choice.lines, style, width, cut)) && cut)
             listener.warn("--annotate: text is shortened to what the picture has room for");
     }
-    if (choice.scaleBar) corners.add(drawScaleBar(scaleBarOf(camera, space), style));
+    if (choice.scaleBar) corners.add(drawScaleBar(scaleBarOf(camera, unit), style));
     if (choice.axes) corners.add(drawAxes(seenAxes(camera, space), style));
     return std::move(corners).placed();
 }

@@ -5,16 +5,37 @@
 #include <cmath>
 
 #include "drawing/nice_step.h"
+#include "length_unit.h"
 #include "number_text.h"
 
 namespace deltasplat {
 
-ScaleBar scaleBarOf(const Camera& camera, const std::string& space) {
+namespace {
+
+// Of a unit that is known, or of the next smaller ones of which it is one or more.
+std::string lengthText(double length, const std::string& unit) {
+    if (unit.empty()) return numberText(length) + " units";
+    const double millimetres = length * millimetresIn(unit);
+    if (length >= 1) return numberText(length) + " " + unit;
+    for (const char* const smaller : {"m", "mm", "um", "nm", "pm"}) {
+        const double count = millimetres / millimetresIn(smaller);
+        // A round number that the way by millimetres has moved off by a rounding.
+        constexpr double kRounding = 1e-9;
+        if (count < 1 - kRounding) continue;
+        const double digits = std::pow(10, std::floor(std::log10(count) + kRounding));
+        return numberText(std::round(count / digits) * digits) + " " + smaller;
+    }
+    return numberText(length) + " " + unit;
+}
+
+}  // namespace
+
+ScaleBar scaleBarOf(const Camera& camera, const std::string& lengthUnit) {
     constexpr double kMostShare = 0.3;
     ScaleBar bar;
     bar.lengthWorld = niceStep(kMostShare * camera.frameWidthWorld, 1);
     bar.lengthPixels = bar.lengthWorld / camera.pixelWorld();
-    bar.label = numberText(bar.lengthWorld) + (space.empty() ? " units" : " mm");
+    bar.label = lengthText(bar.lengthWorld, lengthUnit);
     if (camera.projection == Projection::kPerspective) bar.label += " at target";
     return bar;
 }

@@ -17,8 +17,9 @@ struct ScaleBar {
 
 /// Returns the bar of a camera that is not kLatlong; in perspective it holds at the target's
 /// distance.
-/// @param space  as Volume::space: a patient's is in millimetres
-ScaleBar scaleBarOf(const Camera& camera, const std::string& space);
+/// @param lengthUnit  as Volume::lengthUnit: what is less than one of it is said in smaller units,
+///                    as many of which as the length is
+ScaleBar scaleBarOf(const Camera& camera, const std::string& lengthUnit);
 
 /// Puts the bar into the lower right corner.
 Annotation drawScaleBar(const ScaleBar& bar, const AnnotationStyle& style);

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "box_voxels.h"
 #include "options/parse.h"
 #include "process/peak_bytes.h"
 #include "text/json_text.h"
@@ -16,10 +15,11 @@ namespace deltasplat {
 namespace fs = std::filesystem;
 
 void ConversionStats::add(const Volume& volume, const std::string& codeBook) {
-    voxels += voxelsOf(volume.box);
+    voxels += std::uint64_t(volume.box.voxels());
     active += volume.activeCount;
     maxError = std::max(maxError, volume.readError);
     lossless = lossless && volume.replaced == 0 && volume.readError == 0;
+    areLabels = areLabels || volume.labels;
     addBook(codeBook);
 }
 

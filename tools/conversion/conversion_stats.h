@@ -20,6 +20,7 @@ struct ConversionStats {
     std::vector<std::string> codeBooks;  ///< of all volumes, each once
     double maxError = 0;                 ///< over all voxels
     bool lossless = true;
+    bool areLabels = false;  ///< of any volume; not told
     double seconds = 0;
 
     /// Adds what there is to say of a volume.

@@ -13,7 +13,6 @@
 #include "conversion/conversion_files.h"
 #include "deltasplat/threads.h"
 #include "ingest/files/file_name.h"
-#include "ingest/label_claim.h"
 #include "memory.h"
 #include "modules/load_early.h"
 #include "output_files.h"
@@ -31,26 +30,16 @@ namespace {
 constexpr double kWorkShare = 0.5;
 constexpr double kBytesPerByte = 40;
 
-// No output says of itself that it holds labels, and who reads it takes them for quantities, as a
-// tolerance does.
-void warnOfLostLabels(const ConversionFiles& files, double maxError, const Listener& listener) {
-    const std::string output = files.output.string();
-    listener.warn(output +
-                  ": does not say that its values are labels, as the input does; --tf labels shows "
-                  "them as such");
-    if (maxError > 0)
-        listener.warn(output + ": has other labels than the input, taken for quantities");
-}
-
 ConversionStats convertOne(const ConversionFiles& files, const Convert& convert,
                            const Listener& listener) {
     const auto begin = std::chrono::steady_clock::now();
     // Asked before writing, which may take the input's place.
     const std::uint64_t bytes =
         bytesOf(checkConversionFiles(files.input, files.output, files.stats));
-    const bool areLabels = saysLabels(files.input);
     ConversionStats stats = convert(files, listener);
-    if (areLabels) warnOfLostLabels(files, stats.maxError, listener);
+    if (stats.areLabels && stats.maxError > 0)
+        listener.warn(files.output.string() +
+                      ": has other labels than the input, taken for quantities");
     stats.inputBytes = bytes;
     stats.seconds = secondsSince(begin);
     return stats;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "box_voxels.h"
+#include "deltasplat/ingest/label_list.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "info/sequence_report.h"
 #include "text/json_text.h"
@@ -26,6 +26,18 @@ Json toJson(const Vector& v) {
 Json histogramJson(const Volume& volume) {
     const ValueHistogram histogram = histogramOfValues(volume, kBins);
     return {{"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}};
+}
+
+Json labelsJson(const Volume& volume) {
+    if (!volume.labels) return {};
+    Json labels = Json::array();
+    for (const LabelEntry& label : volume.labels->entries) {
+        const glm::dvec3 rgb = label.rgb.value_or(glm::dvec3(0));
+        labels.push_back({{"value", label.value},
+                          {"name", label.name},
+                          {"color", label.rgb ? Json{rgb.r, rgb.g, rgb.b} : Json()}});
+    }
+    return labels;
 }
 
 Json percentilesJson(const Volume& volume) {
@@ -92,6 +104,7 @@ Json toJson(const GridReport& report, const Json& transferFunction) {
             {"background", volume.background},
             {"background_guess", report.backgroundGuess ? Json(*report.backgroundGuess) : Json()},
             {"background_voxels", guessedVoxels(report)},
+            {"labels", labelsJson(volume)},
             {"percentiles", percentilesJson(volume)},
             {"histogram", histogramJson(volume)},
             {"code_book", volume.codeBook.name()},
@@ -107,7 +120,7 @@ Json toJson(const GridReport& report, const Json& transferFunction) {
 }  // namespace
 
 double comparability(const GridReport& report, int axis) {
-    const double voxels = double(voxelsOf(report.volume.box));
+    const double voxels = double(report.volume.box.voxels());
     return voxels > 0 ? 1 - double(report.counts[axis].deltas) / voxels : 1;
 }
 

@@ -3,13 +3,14 @@
 #include <cmath>
 #include <cstdio>
 
-#include "box_voxels.h"
+#include "deltasplat/ingest/label_list.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "info/info_report.h"
 #include "memory.h"
 #include "number_text.h"
 #include "options/parse.h"
 #include "options/volume_choices.h"
+#include "printable.h"
 #include "text/short_number.h"
 #include "text/text_line.h"
 #include "volume_place.h"
@@ -52,7 +53,7 @@ std::string axisText(const GridReport& report, int axis) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4f", comparability(report, axis));
     return "comparability " + std::string(text) + " as data, " + std::to_string(counts.deltas) +
-           " deltas (" + percent(double(counts.deltas), double(voxelsOf(report.volume.box))) + ")";
+           " deltas (" + percent(double(counts.deltas), double(report.volume.box.voxels())) + ")";
 }
 
 std::string backgroundText(const GridReport& report) {
@@ -101,6 +102,19 @@ std::string codeBookText(const Volume& volume) {
     std::snprintf(share, sizeof share, "%.3g %%", 100 * error.relative);
     return volume.codeBook.name() + ", largest error " + numberText(error.absolute) +
            (error.relative > 0 ? ", " + std::string(share) + " of a value" : "");
+}
+
+std::string labelsText(const Volume& volume) {
+    if (!volume.labels) return "";
+    constexpr std::size_t kMost = 8;
+    const std::vector<LabelEntry>& entries = volume.labels->entries;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(kMost, entries.size()); ++i) {
+        text += (i == 0 ? "" : ", ") + std::to_string(entries[i].value) +
+                (entries[i].name.empty() ? "" : " " + printable(entries[i].name));
+    }
+    if (entries.size() > kMost) text += " and " + std::to_string(entries.size() - kMost) + " more";
+    return textLine("labels", text.empty() ? "without names" : text);
 }
 
 std::string valuesText(const Volume& volume) {
@@ -207,10 +221,12 @@ std::string gridText(const GridReport& report) {
     text += textLine("box", v.empty() ? "empty"
                                       : "(" + toText(v.box.min, ", ") + ") to (" +
                                             toText(v.box.max, ", ") + ")");
-    text += textLine("voxel size", sizeText(v.voxelSize())) + placeText(v);
+    text += textLine("voxel size",
+                     sizeText(v.voxelSize()) + (v.lengthUnit.empty() ? "" : " " + v.lengthUnit)) +
+            placeText(v);
     text += textLine("active", std::to_string(v.activeCount) + " (" +
-                                   percent(double(v.activeCount), double(voxelsOf(v.box))) + ")");
-    text += valuesText(v);
+                                   percent(double(v.activeCount), double(v.box.voxels())) + ")");
+    text += valuesText(v) + labelsText(v);
     text += textLine("background", backgroundText(report)) + textLine("code book", codeBookText(v));
     if (v.origin) text += textLine("delta grid", deltaText(*v.origin));
     if (report.deltaEstimate)

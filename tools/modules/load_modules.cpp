@@ -57,10 +57,9 @@ std::filesystem::path fileOf(const std::string& name) {
     return (program.parent_path() / DELTASPLAT_MODULES / (name + ".so")).lexically_normal();
 }
 
-// An installation may be replaced while a program of the one before runs; and a file may have the
-// name of another one.
+// An installation may be replaced while a program of the one before runs.
 void requireSameVersion(const std::string& name, const std::filesystem::path& file, void* library) {
-    const std::string expected = DELTASPLAT_MODULE_VERSION + name;
+    const std::string expected = DELTASPLAT_MODULE_VERSION;
     const auto* const version =
         static_cast<const char*>(::dlsym(library, "deltasplat_module_version"));
     const std::string got = version ? std::string(version, ::strnlen(version, 100)) : "no version";

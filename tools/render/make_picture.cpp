@@ -66,9 +66,16 @@ void finishPicture(const RenderCommand& command, const Volume& volume, const Opt
         legend = pictureLegend(command, volume, optics, window);
     }
     if (!command.annotations.any()) return;
-    annotate(layOut(command.annotations, result.camera, volume.space, legend, inkFor(result.image),
-                    listener),
-             result.image);
+    if (command.annotations.scaleBar && volume.lengthUnit.empty() && !volume.space.empty())
+        listener.warn(
+            "--scale-bar: the file names no unit of length; millimetres are meant, as is usual of "
+            "a "
+            "patient's space");
+    const bool isMillimetres = volume.lengthUnit.empty() && !volume.space.empty();
+    annotate(
+        layOut(command.annotations, result.camera, volume.space,
+               isMillimetres ? "mm" : volume.lengthUnit, legend, inkFor(result.image), listener),
+        result.image);
 }
 
 // Cut finely, for what solid things cut is shared by the length that is left of it.
@@ -155,7 +162,6 @@ void showScene(const RenderCommand& command, const ReadScene& scene, const Seque
     }
     boundOver(picture.background, result.stats);
     ImageFileOptions image = imageOptions(command, codesOf(volume), result, session);
-    image.space = volume.space;
     const Listener writing = partOf(listener, kRenderShare, 1);
     warnOfDepths(command.channels, options.optics, writing);
     AovOptions aovOptions = command.aovOptions;
@@ -252,7 +258,7 @@ void makeBlack(const RenderCommand& command, const Session& session, const Seque
     if (!command.annotations.lines.empty()) {
         AnnotationChoice lines;
         lines.lines = command.annotations.lines;
-        annotate(layOut(lines, camera, "", std::nullopt, inkFor(image)), image);
+        annotate(layOut(lines, camera, "", "", std::nullopt, inkFor(image)), image);
     }
     if (part.take) part.take(image);
     if (!part.isWritten) return;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "deltasplat/ingest/label_list.h"
 #include "deltasplat/optics/default_ramp.h"
 #include "drawing/shapes.h"
 #include "number_text.h"
@@ -71,6 +72,17 @@ ValueScale functionScale(const Volume& volume, const Optics& optics, bool withOp
     return scale;
 }
 
+// The names that a table gives labels, or without one the file.
+std::map<int, std::string> namesOf(const std::filesystem::path& table, const Volume& volume) {
+    std::map<int, std::string> names = labelNames(table);
+    if (!names.empty() || !volume.labels) return names;
+    for (const LabelEntry& label : volume.labels->entries) {
+        if (!label.name.empty() && std::abs(label.value) < 1000000000)
+            names[int(label.value)] = label.name;
+    }
+    return names;
+}
+
 // Those that are seen, by their numbers.
 std::vector<LabelColor> labelsOf(const Volume& volume, const Optics& optics, bool withOpacity,
                                  const std::map<int, std::string>& names) {
@@ -102,8 +114,8 @@ Legend pictureLegend(const RenderCommand& command, const Volume& volume, const O
     if (window) {
         legend.key = greys(*window);
     } else if (optics.transferFunction.categorical) {
-        legend.key =
-            labelsOf(volume, optics, withOpacity, labelNames(command.picture.transferFunction));
+        legend.key = labelsOf(volume, optics, withOpacity,
+                              namesOf(command.picture.transferFunction, volume));
     } else {
         legend.key = functionScale(volume, optics, withOpacity);
     }

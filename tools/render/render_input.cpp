@@ -9,10 +9,10 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/optics/default_ramp.h"
-#include "ingest/label_claim.h"
 #include "number_text.h"
 #include "optics/hidden_values.h"
 #include "optics/label_changes.h"
+#include "optics/label_function.h"
 #include "optics/scaled_values.h"
 #include "optics/value_colors.h"
 #include "options/transfer_function_option.h"
@@ -45,8 +45,8 @@ std::optional<double> anyBroken(const Volume& volume) {
 }
 
 // Whether a file says that its values are labels, and they can be.
-bool holdsLabels(const std::filesystem::path& input, const Volume& volume) {
-    return saysLabels(input) && !anyBroken(volume);
+bool holdsLabels(const Volume& volume) {
+    return volume.labels && !anyBroken(volume);
 }
 
 // Who sees little of it should know why.
@@ -77,13 +77,12 @@ void warnOfOtherData(const Preset& preset, const Volume& volume, const Listener&
 
 // The preset that is named or, where nothing is, that of a CT scan for one, and that of labels for
 // what is said to be labels; else null.
-const Preset* presetOf(const std::filesystem::path& input, const PictureOptions& picture,
-                       const Volume& volume) {
+const Preset* presetOf(const PictureOptions& picture, const Volume& volume) {
     if (!picture.transferFunction.empty())
         return parseTransferFunction(picture.transferFunction).preset;
     const bool isFree = picture.render.mode == Mode::kComposite && !picture.render.optics.range;
     if (!isFree) return nullptr;
-    if (holdsLabels(input, volume)) return findPreset(kLabelPreset);
+    if (holdsLabels(volume)) return findPreset(kLabelPreset);
     return isHounsfield(volume) ? findPreset(kScanPreset) : nullptr;
 }
 
@@ -300,7 +299,7 @@ void warnOfHidden(const std::filesystem::path& input, const Volume& volume,
 void fitOptics(const std::filesystem::path& input, const PictureOptions& picture,
                const Volume& volume, bool isWhole, RenderOptions& options,
                const Listener& listener) {
-    const Preset* preset = presetOf(input, picture, volume);
+    const Preset* preset = presetOf(picture, volume);
     const std::optional<glm::dvec2>& range = picture.render.optics.range;
     options.optics.surface = picture.surface.of(volume);
     options.optics.shading = shadingOf(picture, volume, preset, options.optics.surface.has_value());
@@ -323,17 +322,21 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
         const bool isOpen = options.optics.transferFunction.normalized && !options.optics.range;
         if (isOpen && !isWhole) options.optics.range = defaultRange(volume);
     }
+    // Labels that a file gives colours have those.
+    if (preset && preset->name == kLabelPreset && volume.labels)
+        options.optics.transferFunction =
+            withColors(options.optics.transferFunction, *volume.labels);
     options.optics.transferFunction =
         changeLabels(options.optics.transferFunction, picture.parts.labels);
     const bool saysTable = !picture.transferFunction.empty();
     if (options.optics.transferFunction.categorical && !options.optics.surface) {
         warnOfLabels(saysTable ? "--tf" : input.string(), picture, preset, volume,
                      options.optics.transferFunction, listener);
-    } else if (!saysTable && mixesVoxels(picture) && holdsLabels(input, volume)) {
+    } else if (!saysTable && mixesVoxels(picture) && holdsLabels(volume)) {
         warnOfMixedLabels(input.string(), picture, listener);
     }
     if (options.optics.surface) {
-        if (holdsLabels(input, volume))
+        if (holdsLabels(volume))
             listener.warn(input.string() +
                           ": a surface takes labels for quantities; without it --show-labels shows "
                           "some of them");
@@ -393,6 +396,11 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
                            : reader ? reader(input, read, listener)
                                     : readVolume(input, read, listener),
                            picture);
+    if (measuresMillimetres(picture.render) && volume.lengthUnit.empty()) {
+        listener.warn(input.string() + ": names no unit of length; " +
+                      (picture.render.mode == Mode::kDrr ? "--mode drr" : "--sid") +
+                      " takes its lengths for millimetres");
+    }
     fitOptics(input, picture, look ? look->standIn(kMainGrid, volume) : volume,
               !look && !picture.parts.cuts(), options, listener);
     if (options.optics.surface) options.optics.densityScale.reset();

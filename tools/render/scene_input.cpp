@@ -2,6 +2,8 @@
 #include "render/scene_input.h"
 
 #include "deltasplat/error.h"
+#include "ingest/placement.h"
+#include "length_unit.h"
 #include "lower_case.h"
 #include "number_text.h"
 #include "options/file_and_name.h"
@@ -48,6 +50,21 @@ void takeUp(const glm::dvec3& up, CameraOptions& camera) {
 }
 
 }  // namespace
+
+bool measuresMillimetres(const RenderOptions& render) {
+    return render.mode == Mode::kDrr || render.camera.sourceToDetectorWorld.has_value();
+}
+
+Volume placed(Volume volume, const PictureOptions& picture) {
+    const RenderOptions& render = picture.render;
+    const double millimetres = millimetresIn(volume.lengthUnit);
+    if (measuresMillimetres(render) && millimetres > 0 && millimetres != 1) {
+        scaleLengths(volume.worldFromIndex, millimetres);
+        volume.lengthUnit = "mm";
+    }
+    volume.worldFromIndex = picture.worldFromInput * volume.worldFromIndex;
+    return volume;
+}
 
 void applyScene(const CLI::App& app, const std::vector<int>& frames, RenderCommand& command,
                 const Listener& listener) {

@@ -28,10 +28,11 @@ void showFrame(std::optional<int> frame, const std::filesystem::path& input,
 /// that is none, as a file that is not there.
 std::vector<FrameFiles> withScene(const SceneChoice& scene, std::vector<FrameFiles> frames);
 
-/// Moves a volume that was read to where a scene has it.
-inline Volume placed(Volume volume, const PictureOptions& picture) {
-    volume.worldFromIndex = picture.worldFromInput * volume.worldFromIndex;
-    return volume;
-}
+/// Whether options are in millimetres: attenuation is that of one, and a C-arm is measured in them.
+bool measuresMillimetres(const RenderOptions& render);
+
+/// Moves a volume that was read to where a scene has it. Where options are in millimetres, its
+/// world is too, if its unit is known.
+Volume placed(Volume volume, const PictureOptions& picture);
 
 }  // namespace deltasplat

@@ -14,6 +14,7 @@
 
 #include "deltasplat/error.h"
 #include "ingest/codes/code_tree.h"
+#include "ingest/grids/grid_metadata.h"
 #include "view/affine.h"
 #include "whole_number.h"
 
@@ -256,6 +257,7 @@ Json SequenceLook::json(const Grid& grid) {
               {"world_from_index", matrixJson(first.worldFromIndex)},
               {"active", grid.active},
               {"range", {grid.least, grid.most}}};
+    if (first.labels) json["labels"] = labelText(*first.labels);
     if (grid.box) json["world_box"] = {vectorJson(grid.box->min), vectorJson(grid.box->max)};
     json["most_frequent"] = pairsJson(grid.mostFrequent);
     json["bits"] = grid.values.bits_;
@@ -274,6 +276,7 @@ SequenceLook::Grid SequenceLook::gridOf(const Json& json) {
     json.at("background").get_to(first.background);
     json.at("space").get_to(first.space);
     first.worldFromIndex = matrixOf(json.at("world_from_index"));
+    if (json.contains("labels")) first.labels = labelsOfText(json.at("labels"));
     grid.active = wholeNumberOf<std::uint64_t>(json.at("active"));
     grid.least = json.at("range").at(0);
     grid.most = json.at("range").at(1);

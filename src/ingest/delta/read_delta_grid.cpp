@@ -29,6 +29,7 @@
 #include "ingest/readers.h"
 #include "ingest/values/value_cast.h"
 #include "ingest/vdb/vdb_transform.h"
+#include "length_unit.h"
 #include "listener_part.h"
 #include "memory.h"
 #include "printable.h"
@@ -73,9 +74,12 @@ Volume describe(const DeltaHeader& header, const VdbMetadata& metadata,
                 const openvdb::math::MapBase& map) {
     Volume volume;
     volume.space = header.space;
+    volume.lengthUnit = lengthUnitNamed(metadata.text(kLengthUnitKey));
+    volume.labels = labelsIn(metadata);
     volume.origin = originOf(header);
     volume.gridClass = sourceClass(metadata);
     volume.worldFromIndex = sourceTransform(map, header.sliceAxis);
+    settleUnit(volume);
     return volume;
 }
 
@@ -167,7 +171,7 @@ Volume readDeltaGrid(TreeGrid& stored, const VdbMetadata& fileMetadata, const st
     if (options.keepSource && header.sourceType == "float32" && !header.book.isExact()) {
         source = {treeFromCodes<openvdb::FloatTree>(decoded.codes->tree(), header.book, 0),
                   {},
-                  makeMap(volume.worldFromIndex)};
+                  makeMapIfAny(volume.worldFromIndex)};
         source.metadata.insert(openvdb::GridBase::META_GRID_NAME, grid.name());
     }
     if (fog && source.tree) {

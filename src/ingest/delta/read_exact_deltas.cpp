@@ -50,6 +50,8 @@ DenseSource denseSource(const TreeGrid& grid, const DeltaHeader& header,
     source.standsForWhole = header.sourceType == "uint64";
     source.worldFromIndex = volume.worldFromIndex;
     source.space = header.space;
+    source.lengthUnit = volume.lengthUnit;
+    source.labels = volume.labels;
     source.forEachLayer = [&grid, size = header.box.dims()](const DenseSource::LayerUse& use,
                                                             const Listener& listener) {
         grid.apply<ExactTrees>([&](const auto& tree) { forEachLayer(tree, size, use, listener); });

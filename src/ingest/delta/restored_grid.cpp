@@ -72,7 +72,7 @@ TreeGrid restoreGrid(const DeltaHeader& header, const DecodedDeltas& decoded,
 TreeGrid restoreGrid(const DeltaHeader& header, const DecodedValues& decoded,
                      const TreeGrid& deltas, const glm::dmat4& worldFromIndex) {
     TreeGrid grid = header.sourceTree.empty()
-                        ? TreeGrid{decoded.values, {}, makeMap(worldFromIndex)}
+                        ? TreeGrid{decoded.values, {}, makeMapIfAny(worldFromIndex)}
                         : dressed(decoded.values, deltas, header, worldFromIndex);
     if (header.sourceTree.empty())
         grid.metadata.insert(openvdb::GridBase::META_GRID_NAME, deltas.name());

@@ -272,6 +272,7 @@ DenseSource medical_module::openDicom(const std::filesystem::path& input, const 
     source.worldFromIndex = files->volume.worldFromIndex;
     requirePlacement(source.where, "places of slices", source.worldFromIndex);
     source.space = "LPS";
+    source.lengthUnit = "mm";
     source.forEachLayer = [files](const DenseSource::LayerUse& use, const Listener& listener) {
         readLayers(*files, use, listener);
     };

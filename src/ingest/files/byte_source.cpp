@@ -2,6 +2,7 @@
 #include "ingest/files/byte_source.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -9,14 +10,22 @@
 
 namespace deltasplat {
 
+// Two bytes that are gzip's, and the only method of packing that it has.
+Packing packingOf(const std::filesystem::path& file, std::uint64_t start) {
+    constexpr std::array<unsigned char, 3> kGzip{0x1f, 0x8b, 8};
+    std::array<unsigned char, 3> begin{};
+    FileBytes(file).read(start, begin.data(), begin.size());
+    return begin == kGzip ? Packing::kGzip : Packing::kNone;
+}
+
 ByteSource::ByteSource(const std::filesystem::path& file, Packing packing, std::uint64_t start)
-    : ByteSource(std::make_shared<const FileBytes>(file), start) {
+    : ByteSource(std::make_shared<const FileBytes>(file), start, packing) {}
+
+ByteSource::ByteSource(std::shared_ptr<const FileBytes> file, std::uint64_t start, Packing packing)
+    : file_(std::move(file)), place_(start) {
     if (packing == Packing::kNone) return;
     unpacker_ = std::make_unique<Unpacker>(*file_, packing == Packing::kZlib, start);
 }
-
-ByteSource::ByteSource(std::shared_ptr<const FileBytes> file, std::uint64_t start)
-    : file_(std::move(file)), place_(start) {}
 
 ByteSource::~ByteSource() = default;
 

@@ -20,14 +20,20 @@ enum class Packing {
     kZlib   ///< one zlib or gzip stream; what follows it is nobody's
 };
 
+/// Returns kGzip for a file that begins as gzip does, whatever its name; kNone for others.
+/// @param start  place in the file to look at
+/// @throw Error(kInput) if the file is missing, not regular or cannot be opened
+Packing packingOf(const std::filesystem::path& file, std::uint64_t start = 0);
+
 /// The bytes of a plain or a packed file, front to back.
 class ByteSource {
   public:
     /// @param start  place in the file of the first byte, plain or packed
     /// @throw Error(kInput) if the file is missing, not regular or cannot be opened
     ByteSource(const std::filesystem::path& file, Packing packing, std::uint64_t start = 0);
-    /// @param start  place in the file of the first byte, which is plain
-    explicit ByteSource(std::shared_ptr<const FileBytes> file, std::uint64_t start = 0);
+    /// The same of a file that is open.
+    explicit ByteSource(std::shared_ptr<const FileBytes> file, std::uint64_t start = 0,
+                        Packing packing = Packing::kNone);
     ~ByteSource();
     ByteSource(const ByteSource&) = delete;
     ByteSource& operator=(const ByteSource&) = delete;

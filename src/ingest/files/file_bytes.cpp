@@ -13,6 +13,8 @@
 
 #include "deltasplat/error.h"
 #include "ingest/files/file_name.h"
+#include "ingest/files/unpacker.h"
+#include "memory.h"
 #include "parallel.h"
 
 namespace deltasplat {
@@ -28,6 +30,27 @@ FileBytes::FileBytes(const std::filesystem::path& file) : path_(file) {
     }
     size_ = std::filesystem::file_size(file);
     opened_ = state();
+}
+
+std::shared_ptr<const FileBytes> FileBytes::unpacked(const std::filesystem::path& file) {
+    constexpr std::size_t kRun = std::size_t{1} << 20;
+    auto bytes = std::make_shared<FileBytes>(file);
+    Unpacker unpacker(*bytes, false, 0);
+    std::vector<char> all;
+    for (std::size_t got = kRun; got == kRun;) {
+        const std::size_t done = all.size();
+        // A vector that grows is there twice for a while.
+        if (done + kRun > all.capacity()) {
+            requireMemory(file.string(), 2 * double(done + kRun));
+            all.reserve(2 * (done + kRun));
+        }
+        all.resize(done + kRun);
+        got = unpacker.read(all.data() + done, kRun);
+        all.resize(done + got);
+    }
+    bytes->size_ = all.size();
+    bytes->held_ = std::move(all);
+    return bytes;
 }
 
 FileBytes::~FileBytes() {
@@ -52,6 +75,12 @@ void FileBytes::throwChanged() const {
 }
 
 std::size_t FileBytes::read(std::uint64_t place, void* to, std::size_t bytes) const {
+    if (held_) {
+        const std::size_t count =
+            std::size_t(std::min<std::uint64_t>(bytes, size_ - std::min(size_, place)));
+        std::copy_n(held_->data() + std::min(size_, place), count, static_cast<char*>(to));
+        return count;
+    }
     std::size_t done = 0;
     while (done < bytes) {
         const ssize_t got =

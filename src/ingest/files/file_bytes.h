@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <vector>
 
 namespace deltasplat {
 
@@ -14,6 +16,9 @@ class FileBytes {
   public:
     /// @throw Error(kInput) if the file is missing, not regular or cannot be opened
     explicit FileBytes(const std::filesystem::path& file);
+    /// Returns the bytes that a file holds under gzip, in memory.
+    /// @throw Error(kInput) if it is no sound gzip; Error(kFailed) if they do not fit into memory
+    static std::shared_ptr<const FileBytes> unpacked(const std::filesystem::path& file);
     ~FileBytes();
     FileBytes(const FileBytes&) = delete;
     FileBytes& operator=(const FileBytes&) = delete;
@@ -38,7 +43,8 @@ class FileBytes {
     std::filesystem::path path_;
     int handle_ = -1;
     std::uint64_t size_ = 0;
-    std::optional<State> opened_;  // state() when it was opened
+    std::optional<State> opened_;            // state() when it was opened
+    std::optional<std::vector<char>> held_;  // in place of the file's own bytes
 };
 
 }  // namespace deltasplat

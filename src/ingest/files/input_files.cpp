@@ -5,9 +5,9 @@
 #include <system_error>
 
 #include "deltasplat/error.h"
-#include "ingest/files/file_name.h"
 #include "ingest/files/input_kind.h"
-#include "ingest/itk/text_header.h"
+#include "ingest/nifti/nifti_header.h"
+#include "ingest/text_formats/text_header.h"
 #include "lower_case.h"
 #include "printable.h"
 
@@ -15,9 +15,8 @@ namespace deltasplat {
 namespace {
 
 // The name that a header gives of its data file; empty if the data follows the header.
-std::string dataNameIn(const std::filesystem::path& header) {
-    const std::string extension = lowerExtension(header);
-    if (extension == ".nrrd" || extension == ".nhdr") {
+std::string dataNameIn(const std::filesystem::path& header, InputKind::Format format) {
+    if (format == InputKind::Format::kNrrd) {
         const TextHeader text = readNrrdHeader(header);
         const std::string* const name = text.find("datafile");
         return name == nullptr ? "" : *name;
@@ -26,13 +25,23 @@ std::string dataNameIn(const std::filesystem::path& header) {
     return lowerCase(name) == "local" ? "" : name;
 }
 
+// The two files of a NIfTI pair, that which was named first.
+std::vector<std::filesystem::path> withPartner(const std::filesystem::path& input) {
+    std::vector<std::filesystem::path> files{input};
+    for (const std::filesystem::path& file : niftiFiles(input))
+        if (file != input) files.push_back(file);
+    return files;
+}
+
 }  // namespace
 
 std::vector<std::filesystem::path> filesOf(const std::filesystem::path& input) {
     try {
         InputKind kind = findInput(input, {});
-        if (kind.format == InputKind::Format::kItk) {
-            const std::string name = dataNameIn(input);
+        if (kind.format == InputKind::Format::kNifti) return withPartner(input);
+        if (kind.format == InputKind::Format::kNrrd ||
+            kind.format == InputKind::Format::kMetaImage) {
+            const std::string name = dataNameIn(input, kind.format);
             if (!name.empty()) kind.files.push_back(input.parent_path() / name);
         }
         return kind.files;
@@ -60,28 +69,17 @@ bool inputsAreConfined() {
 
 namespace {
 
-namespace fs = std::filesystem;
-
-// The folder of an input, or the one that it is.
-fs::path folderOf(const fs::path& input) {
+void requireInFolderOf(const std::filesystem::path& input,
+                       const std::vector<std::filesystem::path>& files) {
+    namespace fs = std::filesystem;
     std::error_code error;
     const fs::path near = fs::is_directory(input, error) ? input : input.parent_path();
-    return near.empty() ? "." : near;
-}
-
-// What is not there at all is for its reader to say.
-bool isWithin(const fs::path& folder, const fs::path& file) {
-    std::error_code error;
-    const fs::path around = fs::canonical(fs::absolute(folder), error);
-    const fs::path real = fs::weakly_canonical(fs::absolute(file), error);
-    const auto parted = std::mismatch(around.begin(), around.end(), real.begin(), real.end());
-    return !error && !around.empty() && parted.first == around.end();
-}
-
-void requireInFolderOf(const fs::path& input, const std::vector<fs::path>& files) {
-    const fs::path folder = folderOf(input);
+    const fs::path folder = fs::canonical(fs::absolute(near.empty() ? "." : near), error);
     for (const fs::path& file : files) {
-        if (isWithin(folder, file)) continue;
+        // What is not there at all is for its reader to say.
+        const fs::path real = fs::weakly_canonical(fs::absolute(file), error);
+        const auto parted = std::mismatch(folder.begin(), folder.end(), real.begin(), real.end());
+        if (!error && !folder.empty() && parted.first == folder.end()) continue;
         throw Error(ErrorCode::kInput,
                     gotExpected(input.string(),
                                 "the file " + printable(file.string()) + " outside of its folder",
@@ -90,15 +88,6 @@ void requireInFolderOf(const fs::path& input, const std::vector<fs::path>& files
 }
 
 }  // namespace
-
-void requireFoundIn(const std::filesystem::path& folder, const std::filesystem::path& input) {
-    const fs::path base = folder.empty() ? "." : folder;
-    if (!inputsAreConfined() || isWithin(base, folderOf(input))) return;
-    throw Error(ErrorCode::kInput, gotExpected(input.string(),
-                                               "a folder outside of " + printable(base.string()) +
-                                                   ", in which the pattern looks",
-                                               "folders inside of it (`confineInputs`)"));
-}
 
 void requireConfined(const std::filesystem::path& input) {
     requireInFolderOf(input, filesOf(input));

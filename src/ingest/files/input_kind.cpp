@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <set>
 #include <system_error>
 
@@ -21,22 +22,32 @@ namespace {
 using Format = InputKind::Format;
 using Files = std::vector<std::filesystem::path>;
 
+// By extension, which may have ".gz" behind it but for DICOM and images.
 const std::map<std::string, Format>& formats() {
     static const std::map<std::string, Format> kFormats{
-        {".vdb", Format::kVdb},    {".raw", Format::kRaw},     {".raw.gz", Format::kRaw},
-        {".npy", Format::kNpy},    {".nii", Format::kNifti},   {".nii.gz", Format::kNifti},
-        {".nrrd", Format::kItk},   {".nhdr", Format::kItk},    {".mhd", Format::kItk},
-        {".mha", Format::kItk},    {".dcm", Format::kDicom},   {".bmp", Format::kImages},
-        {".exr", Format::kImages}, {".jpeg", Format::kImages}, {".jpg", Format::kImages},
-        {".pgm", Format::kImages}, {".png", Format::kImages},  {".tif", Format::kImages},
+        {".vdb", Format::kVdb},       {".raw", Format::kRaw},     {".npy", Format::kNpy},
+        {".nii", Format::kNifti},     {".hdr", Format::kNifti},   {".img", Format::kNifti},
+        {".nrrd", Format::kNrrd},     {".nhdr", Format::kNrrd},   {".mhd", Format::kMetaImage},
+        {".mha", Format::kMetaImage}, {".dcm", Format::kDicom},   {".bmp", Format::kImages},
+        {".exr", Format::kImages},    {".jpeg", Format::kImages}, {".jpg", Format::kImages},
+        {".pgm", Format::kImages},    {".png", Format::kImages},  {".tif", Format::kImages},
         {".tiff", Format::kImages}};
     return kFormats;
 }
 
+std::optional<Format> formatOf(const std::filesystem::path& file) {
+    std::string extension = lowerExtension(file);
+    const bool gzip = extension.ends_with(".gz");
+    if (gzip) extension.resize(extension.size() - 3);
+    const auto found = formats().find(extension);
+    if (found == formats().end()) return {};
+    const bool plainOnly = found->second == Format::kDicom || found->second == Format::kImages;
+    return gzip && plainOnly ? std::nullopt : std::optional(found->second);
+}
+
 constexpr const char* kReadable =
-    ".vdb, .raw, .raw.gz, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .dcm, .tif, .png, .jpg, "
-    ".bmp, "
-    ".pgm or .exr";
+    ".vdb, .raw, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .hdr, .img (all of these also with .gz), "
+    ".dcm, .tif, .png, .jpg, .bmp, .pgm or .exr";
 
 // DICOM files have names of all kinds, but four letters behind 128 bytes that mean nothing.
 bool isDicom(const std::filesystem::path& file) {
@@ -126,8 +137,8 @@ InputKind findInFolder(const std::filesystem::path& folder, const Listener& list
     if (images.empty()) {
         const Files grids =
             filesThat(all, [](const auto& file) { return lowerExtension(file) == ".vdb"; });
-        const Files others = filesThat(
-            all, [](const auto& file) { return formats().contains(lowerExtension(file)); });
+        const Files others =
+            filesThat(all, [](const auto& file) { return formatOf(file).has_value(); });
         std::string such;
         if (!grids.empty()) {
             such = " such as " + grids.front().string() + " (render takes '" +
@@ -158,8 +169,7 @@ std::string nameOfPattern(const StackPattern& pattern) {
 }  // namespace
 
 bool isImageName(const std::filesystem::path& file) {
-    const auto found = formats().find(lowerExtension(file));
-    return found != formats().end() && found->second == Format::kImages;
+    return formatOf(file) == Format::kImages;
 }
 
 InputKind findInput(const std::filesystem::path& input, const Listener& listener) {
@@ -171,14 +181,14 @@ InputKind findInput(const std::filesystem::path& input, const Listener& listener
     }
     requireRegularFile(input);
     const std::string extension = lowerExtension(input);
-    const auto found = formats().find(extension);
-    if (found == formats().end()) {
+    const std::optional<Format> format = formatOf(input);
+    if (!format) {
         refuseFile(input, "extension \"" + extension + "\"",
                    kReadable + std::string(extension == ".usda"    ? " (render reads .usda)"
                                            : extension == ".slabs" ? " (fold reads .slabs)"
                                                                    : ""));
     }
-    return {found->second, nameWithoutExtensions(input), {input}};
+    return {*format, nameWithoutExtensions(input), {input}};
 }
 
 }  // namespace deltasplat

@@ -11,7 +11,7 @@ namespace deltasplat {
 
 /// What an input's name leads to.
 struct InputKind {
-    enum class Format { kVdb, kRaw, kNpy, kNifti, kItk, kDicom, kImages };
+    enum class Format { kVdb, kRaw, kNpy, kNifti, kNrrd, kMetaImage, kDicom, kImages };
     Format format = Format::kVdb;
     std::string name;  ///< without folder, extensions and counter
     /// The input itself, the slices of a DICOM folder in no order, or the images of a stack in the

@@ -293,9 +293,9 @@ IndexBox boxOfVoxels(const openvdb::CoordBBox& active, const std::string& where)
         fits = fits && box.min[axis] > -kFarthest && box.max[axis] < kFarthest;
         voxels *= double(box.max[axis]) - box.min[axis] + 1;
     }
-    if (!fits) {
+    if (!fits || voxels > 0x1p62) {
         fail(where, "active voxels spread over " + numberText(voxels) + " places",
-             "indices within 2^30 of 0");
+             "indices within 2^30 of 0 and a box of at most 2^62 voxels");
     }
     return box;
 }

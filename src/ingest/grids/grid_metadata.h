@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 
+#include "deltasplat/ingest/label_list.h"
 #include "ingest/vdb/vdb_metadata.h"
 
 namespace deltasplat {
@@ -11,6 +13,7 @@ namespace deltasplat {
 inline constexpr const char* kSourceTypeKey = "deltasplat_source_type";  ///< "uint8", ...
 inline constexpr const char* kSpaceKey = "deltasplat_space";             ///< as Volume::space
 inline constexpr const char* kLengthUnitKey = "deltasplat_length_unit";  ///< as Volume::lengthUnit
+inline constexpr const char* kLabelsKey = "deltasplat_labels";           ///< as labelText
 
 /// All voxels of what it was, which active ones may no longer span: corners as vec3i.
 inline constexpr const char* kBoxMinKey = "deltasplat_box_min";
@@ -21,6 +24,16 @@ inline constexpr const char* kUnknownClass = "unknown";
 inline constexpr const char* kLevelSetClass = "level set";
 inline constexpr const char* kFogClass = "fog volume";
 inline constexpr const char* kStaggeredClass = "staggered";
+
+/// Returns what a grid's metadata hold of Volume::labels: a line for each, "7 0.5 0.25 1 kidney" of
+/// value, red, green and blue (or "7 - kidney" without a colour), and name.
+std::string labelText(const LabelList& labels);
+
+/// Returns the labels of such a text. A line that is none is passed over.
+std::shared_ptr<const LabelList> labelsOfText(const std::string& text);
+
+/// Returns the labels that metadata tell of; null where they tell of none.
+std::shared_ptr<const LabelList> labelsIn(const VdbMetadata& metadata);
 
 /// Returns which of these a grid's metadata name; other names are unknown.
 std::string gridClassOf(const VdbMetadata& metadata);

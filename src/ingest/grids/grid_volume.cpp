@@ -10,12 +10,20 @@
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/leaf_bytes.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/placement.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "length_unit.h"
 #include "memory.h"
 #include "number_text.h"
 
 namespace deltasplat {
+
+void settleUnit(Volume& volume) {
+    const double millimetres = millimetresIn(volume.lengthUnit);
+    if (volume.space.empty() || millimetres == 0 || millimetres == 1) return;
+    scaleLengths(volume.worldFromIndex, millimetres);
+    volume.lengthUnit = "mm";
+}
 
 Volume placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metadata,
                     const GridCodesOptions& options) {
@@ -24,6 +32,8 @@ Volume placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metada
     const std::string space = metadata.text(kSpaceKey);
     if (space == "RAS" || space == "LPS") volume.space = space;
     volume.lengthUnit = lengthUnitNamed(metadata.text(kLengthUnitKey));
+    volume.labels = labelsIn(metadata);
+    settleUnit(volume);
     return volume;
 }
 

@@ -12,6 +12,9 @@ namespace deltasplat {
 Volume volumeOfGrid(TreeGrid grid, const GridCodesOptions& options,
                     const VdbMetadata& fileMetadata = {});
 
+/// Makes the lengths of a patient's space millimetres, as Volume::lengthUnit has it.
+void settleUnit(Volume& volume);
+
 /// Returns a volume that has its place, and no voxels.
 Volume placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metadata,
                     const GridCodesOptions& options);

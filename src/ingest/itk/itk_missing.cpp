@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stands in for what reads through ITK, where the library is built without it.
 #include "deltasplat/error.h"
-#include "ingest/files/file_name.h"
 #include "modules/medical_module.h"
 
 namespace deltasplat {
@@ -9,15 +8,10 @@ namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& input, const std::string& got) {
     throw Error(ErrorCode::kInput,
-                gotExpected(input.string(), got,
-                            "a build with DELTASPLAT_ITK=ON to read NRRD, MetaImage and DICOM"));
+                gotExpected(input.string(), got, "a build with DELTASPLAT_ITK=ON to read DICOM"));
 }
 
 }  // namespace
-
-DenseSource medical_module::openItk(const std::filesystem::path& file) {
-    refuse(file, "extension \"" + lowerExtension(file) + "\"");
-}
 
 std::vector<DicomSeries> medical_module::findSeries(const std::filesystem::path& input,
                                                     const std::vector<std::filesystem::path>&) {

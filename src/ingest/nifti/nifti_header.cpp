@@ -15,7 +15,9 @@
 #include "deltasplat/error.h"
 #include "ingest/files/byte_source.h"
 #include "ingest/files/file_name.h"
+#include "ingest/files/refuse_file.h"
 #include "ingest/placement.h"
+#include "length_unit.h"
 #include "number_text.h"
 #include "portable_math.h"
 
@@ -56,6 +58,27 @@ constexpr std::array<TypeInfo, 17> kTypes{{{2, RawType::kUint8, ""},
                                            {2048, {}, "complex256"},
                                            {2304, {}, "RGBA"}}};
 
+// Whether a file has an extension, ".gz" behind it or not.
+bool isExtension(const std::filesystem::path& file, const std::string& extension) {
+    const std::string own = lowerExtension(file);
+    return own == extension || own == extension + ".gz";
+}
+
+// Returns the file beside another that has the same name and another extension; empty if there is
+// none.
+std::filesystem::path partnerOf(const std::filesystem::path& file, const std::string& extension) {
+    const std::string stem = nameWithoutExtensions(file);
+    std::string upper = extension;
+    for (char& c : upper) c = c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c;
+    for (const std::string& name :
+         {extension, extension + ".gz", upper, upper + ".GZ", upper + ".gz"}) {
+        const std::filesystem::path partner = file.parent_path() / (stem + name);
+        std::error_code error;
+        if (std::filesystem::exists(partner, error)) return partner;
+    }
+    return {};
+}
+
 // The header's bytes, read by the file's version and byte order.
 class Fields {
   public:
@@ -63,6 +86,7 @@ class Fields {
     std::array<std::byte, kBytes2> bytes{};
     bool second = false;
     bool bigEndian = false;
+    bool pair = false;  // whether the values are in a file of their own
 
     const Places& places() const { return second ? kPlaces2 : kPlaces1; }
     template <typename T>
@@ -76,6 +100,8 @@ class Fields {
         const std::size_t place = places().dims;
         return second ? at<std::int64_t>(place + 8 * i) : at<std::int16_t>(place + 2 * i);
     }
+    // An axis of no voxels is one that does not count.
+    std::int64_t count(std::size_t axis) const { return dim(axis) == 0 ? 1 : dim(axis); }
     double real(std::size_t place, std::size_t i = 0) const {
         return second ? at<double>(place + 8 * i) : double(at<float>(place + 4 * i));
     }
@@ -91,8 +117,7 @@ class Fields {
 Fields readFields(const std::filesystem::path& file) {
     Fields fields;
     fields.where = file.string();
-    const bool gzip = lowerExtension(file) == ".nii.gz";
-    ByteSource source(file, gzip ? Packing::kGzip : Packing::kNone);
+    ByteSource source(file, packingOf(file));
     const std::size_t got = source.read(fields.bytes.data(), kBytes2);
     for (const std::size_t size : {kBytes1, kBytes2}) {
         for (const bool bigEndian : {false, true}) {
@@ -104,8 +129,11 @@ Fields readFields(const std::filesystem::path& file) {
                 reinterpret_cast<const char*>(fields.bytes.data()) + fields.places().magic;
             const char* const wanted = fields.second ? "n+2" : "n+1";
             if (std::memcmp(magic, wanted, 4) == 0) return fields;
-            if (std::memcmp(magic, fields.second ? "ni2" : "ni1", 4) == 0) {
-                fields.refuse("the header of a .hdr and .img pair", "a NIfTI file in one piece");
+            fields.pair = std::memcmp(magic, fields.second ? "ni2" : "ni1", 4) == 0;
+            if (fields.pair) return fields;
+            if (!fields.second && isExtension(file, ".hdr")) {
+                fields.refuse("a header of Analyze 7.5, which does not say where the patient lies",
+                              "a NIfTI-1 or NIfTI-2 file or pair");
             }
         }
     }
@@ -115,7 +143,7 @@ Fields readFields(const std::filesystem::path& file) {
 std::string dimsText(const Fields& fields, std::int64_t count) {
     std::string text;
     for (std::int64_t i = 1; i <= count; ++i) {
-        text += (i == 1 ? "" : "x") + std::to_string(fields.dim(std::size_t(i)));
+        text += (i == 1 ? "" : "x") + std::to_string(fields.count(std::size_t(i)));
     }
     return text;
 }
@@ -128,7 +156,7 @@ glm::i64vec3 readDims(const Fields& fields) {
     }
     glm::i64vec3 dims(1);
     for (std::int64_t i = 1; i <= count; ++i) {
-        const std::int64_t size = fields.dim(std::size_t(i));
+        const std::int64_t size = fields.count(std::size_t(i));
         if (size < 1 || size > kMost) {
             fields.refuse("dims " + dimsText(fields, count), "each 1.." + std::to_string(kMost));
         }
@@ -140,7 +168,8 @@ glm::i64vec3 readDims(const Fields& fields) {
 // The axes beyond the third, time and the parts of vectors, count volumes.
 double countVolumes(const Fields& fields) {
     double volumes = 1;
-    for (std::int64_t i = 4; i <= fields.dim(0); ++i) volumes *= double(fields.dim(std::size_t(i)));
+    for (std::int64_t i = 4; i <= fields.dim(0); ++i)
+        volumes *= double(fields.count(std::size_t(i)));
     return volumes;
 }
 
@@ -160,6 +189,8 @@ std::uint64_t readDataStart(const Fields& fields) {
     const double least = double(fields.second ? kBytes2 : kBytes1) + 4;
     const double start =
         fields.second ? double(fields.at<std::int64_t>(place)) : fields.real(place);
+    if (fields.pair && start >= 0 && start <= 0x1p62 && start == std::floor(start))
+        return std::uint64_t(start);
     if (start == 0) return std::uint64_t(least);
     if (!(start >= least && start <= 0x1p62) || start != std::floor(start)) {
         fields.refuse("data at byte " + numberText(start), "at least " + numberText(least));
@@ -182,11 +213,6 @@ RawLayout readLayout(const Fields& fields) {
     return layout;
 }
 
-glm::dmat4 requireUsable(const Fields& fields, const glm::dmat4& matrix, const char* name) {
-    requirePlacement(fields.where, name, matrix);
-    return matrix;
-}
-
 glm::dmat4 sform(const Fields& fields) {
     glm::dmat4 matrix(1);
     for (int row = 0; row < 3; ++row) {
@@ -198,8 +224,10 @@ glm::dmat4 sform(const Fields& fields) {
     return matrix;
 }
 
+// A size of 0 is none: the voxel is one unit long.
 double voxelSize(const Fields& fields, int axis) {
-    return fields.real(fields.places().pixelSizes, std::size_t(axis) + 1);
+    const double size = fields.real(fields.places().pixelSizes, std::size_t(axis) + 1);
+    return size == 0 ? 1 : size;
 }
 
 // Method 2 of nifti1.h: a unit quaternion whose real part is left out, then voxel sizes; the sign
@@ -224,12 +252,13 @@ glm::dmat4 qform(const Fields& fields) {
             glm::dvec4(z * handed * voxelSize(fields, 2), 0), glm::dvec4(origin, 1)};
 }
 
-// Method 1: sizes alone. Files of only one or two dimensions leave the others 0.
+// Method 1: sizes alone.
 glm::dmat4 scaling(const Fields& fields) {
     glm::dmat4 matrix(1);
     for (int axis = 0; axis < 3; ++axis) {
-        const double size = voxelSize(fields, axis);
-        if (axis < fields.dim(0)) matrix[axis][axis] = size;
+        // Files of only one or two dimensions leave the others 0, or anything.
+        if (axis < fields.dim(0) || voxelSize(fields, axis) > 0)
+            matrix[axis][axis] = voxelSize(fields, axis);
     }
     return matrix;
 }
@@ -246,33 +275,50 @@ double distance(const glm::dmat4& a, const glm::dmat4& b, const glm::i64vec3& di
     return farthest / portable::pow(std::abs(glm::determinant(glm::dmat3(a))), 1 / 3.0);
 }
 
+// Gives voxels their places: by the sform, else by the qform, else by their sizes alone, each where
+// it gives every voxel one of its own.
 void place(const Fields& fields, const Listener& listener, NiftiHeader& header) {
     const bool hasSform = fields.code(fields.places().sformCode) > 0;
     const bool hasQform = fields.code(fields.places().qformCode) > 0;
-    header.space = hasSform || hasQform ? "RAS" : "";
-    if (hasSform) {
-        header.worldFromIndex = requireUsable(fields, sform(fields), "an sform");
-        if (hasQform && !(distance(header.worldFromIndex, qform(fields), header.layout.dims) < 1)) {
+    const glm::i64vec3& dims = header.layout.dims;
+    const glm::dmat4 bySform = withThickness(sform(fields), dims, voxelSize(fields, 2));
+    const glm::dmat4 byQform = qform(fields);
+    const bool sformPlaces = hasSform && givesPlaces(bySform);
+    const bool qformPlaces = hasQform && givesPlaces(byQform);
+    const std::string rest = qformPlaces ? "the qform is taken" : "the voxel size is taken";
+    if (hasSform && !sformPlaces)
+        listener.warn(fields.where + ": the sform gives voxels no place; " + rest);
+    if (hasQform && !qformPlaces && !sformPlaces)
+        listener.warn(fields.where + ": the qform gives voxels no place; " + rest);
+    header.space = sformPlaces || qformPlaces ? "RAS" : "";
+    if (sformPlaces) {
+        header.worldFromIndex = bySform;
+        if (hasQform && !(distance(bySform, byQform, dims) < 1))
             listener.warn(fields.where + ": sform and qform differ; the sform is taken");
-        }
-    } else if (hasQform) {
-        header.worldFromIndex = requireUsable(fields, qform(fields), "a qform");
+    } else if (qformPlaces) {
+        header.worldFromIndex = byQform;
     } else {
-        header.worldFromIndex = requireUsable(fields, scaling(fields), "a voxel size");
+        header.worldFromIndex = scaling(fields);
+        requirePlacement(fields.where, "a voxel size", header.worldFromIndex);
         listener.warn(fields.where +
                       ": neither sform nor qform: only the voxel size is known, not where the "
                       "volume lies or which side is left");
     }
 }
 
-void warnOfUnits(const Fields& fields, const Listener& listener) {
-    const std::byte unit =
+// A patient's space is in millimetres.
+void readUnit(const Fields& fields, const Listener& listener, NiftiHeader& header) {
+    constexpr std::array<const char*, 4> kUnits{"", "m", "mm", "um"};
+    const auto code = std::size_t(
         fields.bytes[fields.places().units + (fields.second && fields.bigEndian ? 3 : 0)] &
-        std::byte{7};
-    if (unit == std::byte{1}) listener.warn(fields.where + ": lengths are in metres, and stay so");
-    if (unit == std::byte{3}) {
-        listener.warn(fields.where + ": lengths are in micrometres, and stay so");
-    }
+        std::byte{7});
+    header.lengthUnit = code < kUnits.size() ? kUnits[code] : "";
+    if (header.space.empty() || header.lengthUnit.empty() || header.lengthUnit == "mm") return;
+    listener.warn(fields.where + ": lengths are in " + (code == 1 ? "metres" : "micrometres") +
+                  ", and are turned into millimetres");
+    scaleLengths(header.worldFromIndex, millimetresIn(header.lengthUnit));
+    header.lengthUnit = "mm";
+    requirePlacement(fields.where, "lengths in millimetres", header.worldFromIndex);
 }
 
 // A slope of 0 means that there is none; so do NaN and infinity, which some programs write.
@@ -285,16 +331,32 @@ void readRescale(const Fields& fields, NiftiHeader& header) {
 
 }  // namespace
 
+std::vector<std::filesystem::path> niftiFiles(const std::filesystem::path& file) {
+    if (!isExtension(file, ".hdr") && !isExtension(file, ".img")) return {file};
+    std::vector<std::filesystem::path> files;
+    for (const char* const extension : {".hdr", ".img"}) {
+        const std::filesystem::path one =
+            isExtension(file, extension) ? file : partnerOf(file, extension);
+        if (!one.empty()) files.push_back(one);
+    }
+    return files;
+}
+
 NiftiHeader readNiftiHeader(const std::filesystem::path& file, const Listener& listener) {
-    const Fields fields = readFields(file);
+    requireRegularFile(file);
+    const std::filesystem::path head = niftiFiles(file).front();
+    if (head == file && isExtension(file, ".img"))
+        refuseFile(file, "no .hdr file beside it", "both files of a NIfTI pair");
+    const Fields fields = readFields(head);
     NiftiHeader header;
+    header.dataFile = fields.pair ? partnerOf(head, ".img") : head;
+    if (header.dataFile.empty())
+        refuseFile(head, "no .img file beside it", "both files of a NIfTI pair");
     header.layout = readLayout(fields);
     header.volumes = std::int64_t(countVolumes(fields));
     header.dims = dimsText(fields, fields.dim(0));
     place(fields, listener, header);
-    header.placeDigits =
-        fields.second ? std::numeric_limits<double>::digits : std::numeric_limits<float>::digits;
-    warnOfUnits(fields, listener);
+    readUnit(fields, listener, header);
     readRescale(fields, header);
     constexpr int kLabelIntent = 1002;
     header.isLabels = fields.code(fields.places().intentCode) == kLabelIntent;

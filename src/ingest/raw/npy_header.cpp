@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "deltasplat/error.h"
-#include "ingest/files/file_bytes.h"
+#include "ingest/files/byte_source.h"
 #include "ingest/files/refuse_file.h"
 #include "printable.h"
 
@@ -96,19 +96,22 @@ class Parser {
 // Returns the text of the header, and where the values begin.
 std::pair<std::string, std::uint64_t> readText(const std::filesystem::path& file) {
     constexpr std::size_t kMost = std::size_t{1} << 20;
-    const FileBytes bytes(file);
+    ByteSource bytes(file, packingOf(file));
     unsigned char head[12] = {};
-    const std::size_t got = bytes.read(0, head, sizeof head);
+    const std::size_t got = bytes.read(head, 10);
     const int version = head[6];
     if (got < 10 || std::memcmp(head, "\x93NUMPY", 6) != 0 || version < 1 || version > 3) {
         refuseFile(file, "no NumPy header", "a .npy file of version 1 to 3");
     }
     const bool first = version == 1;
     const std::size_t start = first ? 10 : 12;
+    if (!first && bytes.read(head + 10, 2) != 2) {
+        refuseFile(file, "a header that is cut short", "a whole one");
+    }
     std::size_t length = std::size_t(head[8]) | std::size_t(head[9]) << 8;
     if (!first) length |= std::size_t(head[10]) << 16 | std::size_t(head[11]) << 24;
     std::string text(std::min(length, kMost), '\0');
-    if (length > kMost || bytes.read(start, text.data(), length) != length) {
+    if (length > kMost || bytes.read(text.data(), length) != length) {
         refuseFile(file, "a header that is cut short", "a whole one");
     }
     return {text, start + length};

@@ -29,7 +29,7 @@ std::string expectedSize(const RawFile& file) {
 }
 
 [[noreturn]] void throwSize(const RawFile& file, std::uint64_t bytes) {
-    throwSize(file, std::to_string(bytes) + (file.gzip ? " bytes unpacked" : " bytes"));
+    throwSize(file, std::to_string(bytes) + (file.isPacked() ? " bytes unpacked" : " bytes"));
 }
 
 enum class PackedEnd { kIsChecked, kIsKnown };
@@ -46,15 +46,14 @@ void requireEnd(const RawFile& file, ByteSource& source, std::uint64_t done,
     if (more != 0 && !file.mayGoOn) throwSize(file, done + later + more);
 }
 
-// @param bytes  of a plain file; else null
+// @param bytes  of the file
 // @param step   slices at a time
 void readLayers(const RawFile& file, const std::shared_ptr<const FileBytes>& bytes, int step,
                 PackedEnd end, const DenseSource::LayerUse& use, const Listener& listener) {
     // What lies before the volume is passed over, where it is not packed without being read.
-    ByteSource source =
-        bytes ? ByteSource(bytes, file.start()) : ByteSource(file.path, Packing::kGzip);
+    ByteSource source(bytes, file.isPacked() ? file.packedStart : file.start(), file.packing);
     const auto beat = [&](double share) { return [&listener, share] { listener.report(share); }; };
-    std::uint64_t done = file.gzip ? source.skip(file.start(), beat(0)) : file.start();
+    std::uint64_t done = file.isPacked() ? source.skip(file.start(), beat(0)) : file.start();
     const int slices = int(file.layout.dims.z);
     const std::size_t sliceBytes = std::size_t(file.layout.dims.x) *
                                    std::size_t(file.layout.dims.y) *
@@ -71,16 +70,17 @@ void readLayers(const RawFile& file, const std::shared_ptr<const FileBytes>& byt
         listener.report(double(first + count) / slices);
     }
     // The size of a plain file has been looked at.
-    const bool known = file.gzip ? end == PackedEnd::kIsKnown : file.volumes > 1;
+    const bool known = file.isPacked() ? end == PackedEnd::kIsKnown : file.volumes > 1;
     if (!known) requireEnd(file, source, done, beat(1));
 }
 
 }  // namespace
 
 void requireRawSize(const RawFile& file) {
-    const std::uint64_t held = std::filesystem::file_size(file.path);
+    const std::uint64_t held =
+        file.bytes ? file.bytes->size() : std::filesystem::file_size(file.path);
     const std::uint64_t wanted = file.layout.skipBytes + file.dataBytes();
-    if (!file.gzip) {
+    if (!file.isPacked()) {
         if (held < wanted || (held > wanted && !file.mayGoOn)) throwSize(file, held);
         return;
     }
@@ -100,7 +100,7 @@ DenseSource denseSourceOf(const RawFile& file) {
     source.bigEndian = file.layout.bigEndian;
     source.volumes = file.volumes;
     source.step = source.enoughSlices();
-    const auto bytes = file.gzip ? nullptr : std::make_shared<const FileBytes>(file.path);
+    const auto bytes = file.bytes ? file.bytes : std::make_shared<const FileBytes>(file.path);
     source.forEachLayer = [file, bytes, step = source.stepSlices(),
                            checked = std::make_shared<bool>(false)](
                               const DenseSource::LayerUse& use, const Listener& listener) {
@@ -108,7 +108,7 @@ DenseSource denseSourceOf(const RawFile& file) {
                    listener);
         *checked = true;
     };
-    if (bytes)
+    if (!file.isPacked())
         source.rows = std::make_shared<const StoredRows>(bytes, file.start(), source.rowBytes(),
                                                          source.dims.y);
     return source;

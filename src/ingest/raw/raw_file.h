@@ -3,22 +3,27 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 
 #include "ingest/dense/dense_source.h"
+#include "ingest/files/byte_source.h"
 
 namespace deltasplat {
 
 /// Values that lie in a file one after the other, plain or under gzip.
 struct RawFile {
     std::filesystem::path path;
-    RawLayout layout;  ///< of one volume, behind skipBytes
-    bool gzip = false;
-    bool mayGoOn = false;  ///< whether bytes may follow the last value
+    RawLayout layout;  ///< of one volume, behind skipBytes of what is unpacked
+    Packing packing = Packing::kNone;
+    std::uint64_t packedStart = 0;  ///< place in the file where packed bytes begin
+    std::shared_ptr<const FileBytes> bytes = nullptr;  ///< of the file, if it is open already
+    bool mayGoOn = false;                              ///< whether bytes may follow the last value
     /// How many volumes of this layout there are, one behind the other, and which one is read. All
     /// of their bytes fit into 62 bits.
     std::int64_t volumes = 1;
     std::int64_t volume = 0;
 
+    bool isPacked() const { return packing != Packing::kNone; }
     std::uint64_t dataBytes() const { return std::uint64_t(volumes) * layout.dataBytes(); }
     /// Where the values of the volume begin, and how many bytes of others follow them.
     std::uint64_t start() const {

@@ -61,7 +61,8 @@ DenseSource openNpy(const std::filesystem::path& path, const ReadOptions& option
     const RawFormat& format = options.raw;
     const NpyHeader header = readNpyHeader(path);
     requireGeometry(format);
-    RawFile file{path, header.layout, false, false, header.volumes};
+    RawFile file{path, header.layout, packingOf(path)};
+    file.volumes = header.volumes;
     requireRawSize(file);
     file.volume =
         chooseVolume(path.string(), "shape " + header.shape, header.volumes, options.volume);

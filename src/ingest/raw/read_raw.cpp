@@ -9,8 +9,12 @@
 namespace deltasplat {
 
 DenseSource openRaw(const std::filesystem::path& path, const RawFormat& format) {
-    const RawFile file{path, resolveRawLayout(path, format), lowerExtension(path) == ".raw.gz",
-                       false};
+    RawFile file{path, resolveRawLayout(path, format)};
+    requireRegularFile(path);
+    // Values may begin as gzip does: what has the size of plain ones is plain, but for its name.
+    const bool named = lowerExtension(path) == ".raw.gz";
+    const std::uint64_t plain = file.layout.skipBytes + file.layout.dataBytes();
+    if (named || std::filesystem::file_size(path) != plain) file.packing = packingOf(path);
     requireRawSize(file);
     DenseSource source = denseSourceOf(file);
     source.worldFromIndex =

@@ -54,17 +54,38 @@ MapBase::Ptr affineMap(const glm::dmat4& worldFromIndex) {
 
 }  // namespace
 
-MapBase::Ptr makeMap(const glm::dmat4& worldFromIndex) {
-    const glm::dmat4& m = worldFromIndex;
+namespace {
+
+// Null where OpenVDB takes a voxel for flat.
+MapBase::Ptr mapIfAny(const glm::dmat4& m) {
     try {
         return isScaleAndTranslation(m) ? scaleMap({m[0].x, m[1].y, m[2].z}, glm::dvec3(m[3]))
                                         : affineMap(m);
     } catch (const openvdb::ArithmeticError&) {
-        const glm::dvec3 size(glm::length(m[0]), glm::length(m[1]), glm::length(m[2]));
-        throw Error(ErrorCode::kFailed,
-                    gotExpected("voxel size", numberText(size),
-                                "a volume of at least 3e-15, as .vdb has it (other units?)"));
+        return nullptr;
     }
+}
+
+}  // namespace
+
+bool hasMap(const glm::dmat4& worldFromIndex) {
+    return mapIfAny(worldFromIndex) != nullptr;
+}
+
+MapBase::Ptr makeMapIfAny(const glm::dmat4& worldFromIndex) {
+    const MapBase::Ptr map = mapIfAny(worldFromIndex);
+    return map ? map : std::make_shared<UniformScaleMap>(1);
+}
+
+MapBase::Ptr makeMap(const glm::dmat4& worldFromIndex) {
+    const glm::dmat4& m = worldFromIndex;
+    const MapBase::Ptr map = mapIfAny(m);
+    if (map) return map;
+    const glm::dvec3 size(glm::length(m[0]), glm::length(m[1]), glm::length(m[2]));
+    throw Error(ErrorCode::kFailed,
+                gotExpected("voxel size", numberText(size) + " without a unit of length",
+                            "a volume of at least 3e-15, as OpenVDB's grids have it (.nrrd has no "
+                            "such limit)"));
 }
 
 // Transform's constructor takes near numbers for equal and rounds when it simplifies a map. Reading
@@ -169,7 +190,7 @@ MapBase::Ptr makeMapOfType(const std::string& mapType, const glm::dmat4& worldFr
     } catch (const openvdb::ArithmeticError&) {
         // The matrix may be one of another type.
     }
-    return makeMap(worldFromIndex);
+    return makeMapIfAny(worldFromIndex);
 }
 
 }  // namespace deltasplat

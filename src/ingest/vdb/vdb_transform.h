@@ -12,8 +12,13 @@ namespace deltasplat {
 /// Returns the simplest OpenVDB map that is exactly this affine matrix (uniform scale, scale, ...).
 /// @throw Error(kFailed) if a voxel's volume is below 3e-15, which OpenVDB takes for 0
 openvdb::math::MapBase::Ptr makeMap(const glm::dmat4& worldFromIndex);
+/// Whether there is such a map.
+bool hasMap(const glm::dmat4& worldFromIndex);
+/// Returns makeMap's, or, where there is none, the map of unit voxels: for a grid in memory, whose
+/// Volume says where it lies.
+openvdb::math::MapBase::Ptr makeMapIfAny(const glm::dmat4& worldFromIndex);
 /// Returns a map of the type named ("UniformScaleMap", ...), if that can be this matrix, otherwise
-/// what makeMap returns, or throws.
+/// what makeMapIfAny returns.
 openvdb::math::MapBase::Ptr makeMapOfType(const std::string& mapType,
                                           const glm::dmat4& worldFromIndex);
 

@@ -29,7 +29,7 @@ void addNrrd(std::vector<std::string>& inputs) {
     add(sizes + space + "encoding: gzip\n", gzipped(values()));
     add(sizes + "spacings: 1 2 3\naxis mins: 1 2 3\ncenters: cell cell node\nencoding: raw\n",
         values());
-    // What NrrdIO would read otherwise than we do.
+    // Lines of others, and fields that are spelled otherwise.
     add(sizes + "encoding: raw\n# x\rdata file: -\r\nkey:=x\rlabels: \"a\"\nData  File: x\n",
         values());
     add(sizes + "encoding: ascii\n", numbers());
@@ -61,7 +61,7 @@ void addMeta(std::vector<std::string>& inputs) {
         "AcquisitionDate = 2000\nDistanceUnits = mm\nOrigin = 1 2 3\n" +
             sizes,
         values());
-    // What MetaIO would read otherwise than we do.
+    // Fields that are spelled otherwise.
     add("elementdatafile = LOCAL\nndims = -1\nElement Data File: x\nComment = x\rNDims = 9\n" +
             sizes,
         values());

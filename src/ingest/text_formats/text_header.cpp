@@ -1,31 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ingest/itk/text_header.h"
+#include "ingest/text_formats/text_header.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <fstream>
 #include <optional>
 #include <span>
 #include <sstream>
 #include <string_view>
 
 #include "deltasplat/error.h"
-#include "ingest/files/file_name.h"
+#include "ingest/files/byte_source.h"
 #include "lower_case.h"
 #include "printable.h"
 
 namespace deltasplat {
 namespace {
 
-// ITK's readers copy names and values to buffers of a few hundred bytes.
-constexpr std::size_t kMostLine = 200;
-// Nine numbers of 17 digits do not fit there; these fields are read number by number.
-constexpr std::array<std::string_view, 5> kMatrixFields{
-    "spacedirections", "measurementframe", "transformmatrix", "rotation", "orientation"};
-constexpr std::size_t kMostMatrixLine = 450;
-constexpr std::size_t kMostFreeLine = 16384;
-constexpr std::size_t kMostHeader = std::size_t{1} << 20;
+constexpr std::size_t kMostLine = std::size_t{1} << 20;
+constexpr std::size_t kMostHeader = std::size_t{1} << 24;
 
 [[noreturn]] void refuse(const std::string& where, const std::string& got,
                          const std::string& expected) {
@@ -51,71 +44,74 @@ bool controls(char c) {
     return (static_cast<unsigned char>(c) < ' ' && c != '\t') || c == '\x7f';
 }
 
-// The lines of a file, one after the other, none of them longer than is sane. What some take for
-// the end of a line or of a text, and others do not, is in none.
+// The lines of a file, plain or under gzip, one after the other.
 class Lines {
   public:
-    explicit Lines(const std::filesystem::path& file) : where_(file.string()) {
-        requireRegularFile(file);
-        in_.open(file, std::ios::binary);
-        if (!in_) refuse(where_, "a file that cannot be opened", "a readable file");
-    }
+    explicit Lines(const std::filesystem::path& file)
+        : where_(file.string()), source_(file, packingOf(file)) {}
     std::optional<std::string> next() {
         std::string line;
-        for (char c = 0; in_.get(c);) {
-            ++place_;
-            if (place_ > kMostHeader || line.size() > kMostFreeLine) {
+        for (std::optional<char> c; (c = get());) {
+            if (place_ > kMostHeader || line.size() > kMostLine) {
                 refuse(where_, "a header without end", "a text header");
             }
-            if (c == '\n') return whole(line);
-            line += c;
+            if (c == '\n') {
+                if (line.ends_with('\r')) line.pop_back();
+                return line;
+            }
+            line += *c;
         }
-        return line.empty() ? std::nullopt : std::optional(whole(line));
+        return line.empty() ? std::nullopt : std::optional(line);
     }
-    bool ended() const { return !in_.eof(); }  ///< the last line, by an end of line
     std::uint64_t place() const { return place_; }
     const std::string& where() const { return where_; }
 
   private:
-    std::string whole(std::string line) const {
-        if (ended() && line.ends_with('\r')) line.pop_back();
-        if (std::ranges::none_of(line, controls)) return line;
-        refuse(where_,
-               "control characters in the header line \"" + printable(line.substr(0, 40)) + "\"",
-               "lines of text");
+    std::optional<char> get() {
+        if (used_ == held_) {
+            held_ = source_.read(buffer_.data(), buffer_.size());
+            used_ = 0;
+        }
+        if (held_ == 0) return {};
+        ++place_;
+        return buffer_[used_++];
     }
 
     std::string where_;
-    std::ifstream in_;
+    ByteSource source_;
+    std::array<char, 4096> buffer_{};
+    std::size_t held_ = 0, used_ = 0;
     std::uint64_t place_ = 0;
 };
 
-void requireSaneLine(const Lines& lines, const std::string& line) {
-    constexpr std::size_t kMostName = 24;
-    const std::string name =
-        fieldName(line.substr(0, line.substr(0, kMostName).find_first_of(":=")));
-    const bool matrix =
-        std::ranges::find(kMatrixFields, std::string_view(name)) != kMatrixFields.end();
-    const std::size_t most = matrix ? kMostMatrixLine : kMostLine;
-    if (line.size() <= most) return;
-    refuse(lines.where(), "the header line \"" + printable(line.substr(0, 20)) + "...\"",
-           "at most " + std::to_string(most) + " characters of text");
+// As much of a line as a message can hold.
+std::string quoted(const std::string& line) {
+    constexpr std::size_t kMost = 60;
+    const bool whole = line.size() <= kMost;
+    return "the header line \"" + printable(line.substr(0, kMost)) + (whole ? "\"" : "...\"");
 }
 
 [[noreturn]] void refuseLine(const Lines& lines, const std::string& line,
                              const std::string& expected) {
-    refuse(lines.where(), "the header line \"" + printable(line) + "\"", expected);
+    refuse(lines.where(), quoted(line), expected);
+}
+
+// In fields that mean something here. What some take for the end of a line, and others do not, is
+// in none of them.
+void requireText(const Lines& lines, const std::string& line) {
+    if (std::ranges::none_of(line, controls)) return;
+    refuse(lines.where(), "control characters in " + quoted(line), "lines of text");
 }
 
 // Of a field given twice readers take one or the other.
 void addField(const Lines& lines, const TextHeader::Field& field, TextHeader& header) {
-    if (header.find(field.name) != nullptr && field.name != "comment") {
+    if (header.find(field.name) != nullptr) {
         refuse(lines.where(), "the field " + printable(field.name) + " twice", "each field once");
     }
     header.fields.push_back(field);
 }
 
-// NrrdIO takes these in upper and lower case, and with the blank or without.
+// Fields of the format, which come in upper and lower case, and with the blank or without.
 constexpr std::array<std::string_view, 31> kNrrdFields{"content",
                                                        "number",
                                                        "type",
@@ -148,42 +144,34 @@ constexpr std::array<std::string_view, 31> kNrrdFields{"content",
                                                        "measurement frame",
                                                        "data file"};
 
-// MetaIO takes these as they stand here and not otherwise.
-constexpr std::array<std::string_view, 36> kMetaFields{"Comment",
-                                                       "AcquisitionDate",
-                                                       "ObjectType",
-                                                       "ObjectSubType",
-                                                       "NDims",
-                                                       "Name",
-                                                       "ID",
-                                                       "ParentID",
+// Fields that say what the voxels are and where. Others are anybody's, and passed over.
+constexpr std::array<std::string_view, 28> kMetaFields{"NDims",
                                                        "CompressedData",
                                                        "CompressedDataSize",
                                                        "BinaryData",
                                                        "ElementByteOrderMSB",
                                                        "BinaryDataByteOrderMSB",
-                                                       "Color",
                                                        "Position",
                                                        "Origin",
                                                        "Offset",
                                                        "TransformMatrix",
                                                        "Rotation",
                                                        "Orientation",
-                                                       "CenterOfRotation",
                                                        "DistanceUnits",
                                                        "AnatomicalOrientation",
                                                        "ElementSpacing",
                                                        "DimSize",
                                                        "HeaderSize",
-                                                       "Modality",
-                                                       "ImagePosition",
-                                                       "SequenceID",
-                                                       "ElementMin",
-                                                       "ElementMax",
                                                        "ElementNumberOfChannels",
                                                        "ElementSize",
                                                        "ElementNBits",
                                                        "ElementType",
+                                                       "ElementToIntensityFunctionSlope",
+                                                       "ElementToIntensityFunctionOffset",
+                                                       "RescaleSlope",
+                                                       "RescaleIntercept",
+                                                       "RescaleOffset",
+                                                       "intent_code",
                                                        "ElementDataFile"};
 
 // How a format spells the field whose letters these are; empty if it has none.
@@ -193,41 +181,53 @@ std::string_view spellingOf(std::span<const std::string_view> fields, const std:
     return found == fields.end() ? std::string_view() : *found;
 }
 
+// Takes a line "key:=value", where backslashes stand before what would end a line or a key.
+void addKeyValue(const std::string& line, std::size_t sign, TextHeader& header) {
+    const auto plain = [](const std::string& text) {
+        std::string result;
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            const bool escapes = text[i] == '\\' && i + 1 < text.size() &&
+                                 (text[i + 1] == 'n' || text[i + 1] == '\\');
+            result += !escapes ? text[i] : text[i + 1] == 'n' ? '\n' : '\\';
+            i += escapes ? 1 : 0;
+        }
+        return result;
+    };
+    header.keyValues.emplace_back(plain(line.substr(0, sign)), plain(line.substr(sign + 2)));
+}
+
+// What follows the first colon tells a field from a key, whatever the key's name.
 void addNrrdLine(const Lines& lines, const std::string& line, TextHeader& header) {
-    const std::string before = line.substr(0, line.find(':'));
+    const std::size_t colon = std::min(line.find(':'), line.size());
+    const std::string before = line.substr(0, colon);
     const std::string letters = fieldName(before);
     const std::string_view spelling = spellingOf(kNrrdFields, letters);
-    if (spelling.empty()) {
-        // NrrdIO looks for ":=" where it knows no field; it is no field of any other spelling.
-        if (before.size() < line.size() && line.find(":=") != std::string::npos) return;
-        requireSaneLine(lines, line);
-        refuseLine(lines, line, "\"field: value\"");
-    }
-    requireSaneLine(lines, line);
     const bool spelled = lowerCase(before) == spelling || lowerCase(before) == letters;
-    if (!spelled || line.compare(before.size(), 2, ": ") != 0) {
-        refuseLine(lines, line, "\"" + std::string(spelling) + ": value\"");
+    const bool isField = !spelling.empty() && line.compare(colon, 2, ": ") == 0;
+    if (!isField || !spelled) {
+        const std::size_t sign = line.find(":=");
+        if (sign != std::string::npos) return addKeyValue(line, sign, header);
+        refuseLine(
+            lines, line,
+            spelling.empty() ? "\"field: value\"" : "\"" + std::string(spelling) + ": value\"");
     }
+    requireText(lines, line);
     // Blanks behind a name of a file are part of it.
-    const std::size_t value =
-        std::min(line.size(), line.find_first_not_of(" \t", before.size() + 1));
+    const std::size_t value = std::min(line.size(), line.find_first_not_of(" \t", colon + 1));
     addField(lines, {letters, line.substr(value)}, header);
 }
 
 void addMetaLine(const Lines& lines, const std::string& line, TextHeader& header) {
-    requireSaneLine(lines, line);
-    const std::size_t sign = line.find_first_of("=:");
-    if (sign == std::string::npos || line[sign] == ':' || trimmed(line.substr(0, sign)).empty()) {
-        refuseLine(lines, line, "\"Name = value\"");
-    }
-    const std::string name = trimmed(line.substr(0, sign));
-    const std::string value = trimmed(line.substr(sign + 1));
+    const std::size_t sign = line.find('=');
+    const std::string name = trimmed(line.substr(0, std::min(sign, line.size())));
+    if (sign == std::string::npos || name.empty()) refuseLine(lines, line, "\"Name = value\"");
     const std::string_view spelling = spellingOf(kMetaFields, fieldName(name));
-    // MetaIO passes over any number of signs.
+    if (spelling.empty()) return;
+    requireText(lines, line);
+    const std::string value = trimmed(line.substr(sign + 1));
     const bool signs = value.starts_with('=') || value.starts_with(':');
-    if (!spelling.empty() && (name != spelling || signs)) {
+    if (name != spelling || signs)
         refuseLine(lines, line, "\"" + std::string(spelling) + " = value\"");
-    }
     addField(lines, {fieldName(name), value}, header);
 }
 
@@ -236,6 +236,13 @@ void addMetaLine(const Lines& lines, const std::string& line, TextHeader& header
 const std::string* TextHeader::find(const std::string& name) const {
     for (const Field& field : fields) {
         if (field.name == name) return &field.value;
+    }
+    return nullptr;
+}
+
+const std::string* TextHeader::findKey(const std::string& key) const {
+    for (const auto& [name, value] : keyValues) {
+        if (name == key) return &value;
     }
     return nullptr;
 }
@@ -249,8 +256,6 @@ TextHeader readNrrdHeader(const std::filesystem::path& file) {
         refuse(lines.where(), "no NRRD header", "a file that begins with NRRD0001 to NRRD0005");
     }
     while ((line = lines.next()) && !line->empty()) {
-        // NrrdIO passes over what no end of line follows.
-        if (!lines.ended()) refuseLine(lines, *line, "an end of line behind it");
         if ((*line)[0] != '#') addNrrdLine(lines, *line, header);
     }
     header.dataStart = lines.place();
@@ -263,7 +268,7 @@ TextHeader readMetaHeader(const std::filesystem::path& file) {
     for (std::optional<std::string> line; (line = lines.next());) {
         if (trimmed(*line).empty()) continue;
         addMetaLine(lines, *line, header);
-        if (header.fields.back().name == "elementdatafile") {
+        if (!header.fields.empty() && header.fields.back().name == "elementdatafile") {
             header.dataStart = lines.place();
             return header;
         }
