@@ -106,9 +106,9 @@ DeepViewResult renderDeepView(const PictureView& picture, int slicesPerSample, K
         const Clock::time_point warpStart = Clock::now();
         if (picture.showChangesLayer()) {
             Layer shown = merged;
-            result.gain = std::max(result.gain, picture.show(shown, flat));
+            result.gain = std::max(result.gain, picture.show(shown, PicturePart(flat)));
         } else {
-            result.gain = std::max(result.gain, picture.show(merged, flat));
+            result.gain = std::max(result.gain, picture.show(merged, PicturePart(flat)));
         }
         const double first = faceBefore(cut.firstSlice, parts);
         const double last = faceBefore(cut.lastSlice + 1, parts);

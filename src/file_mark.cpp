@@ -17,8 +17,10 @@ std::uint64_t hashOf(std::string_view text, std::uint64_t before) {
 std::uint64_t markOf(const std::filesystem::path& file) {
     constexpr std::uint64_t kBytes = 4096;
     std::error_code ignored;
+    // Looked at first, because opening a pipe waits for who writes to it.
+    if (!std::filesystem::is_regular_file(file, ignored)) return 0;
     std::ifstream in(file, std::ios::binary);
-    if (!std::filesystem::is_regular_file(file, ignored) || !in) return 0;
+    if (!in) return 0;
     const std::uint64_t size = std::filesystem::file_size(file, ignored);
     std::uint64_t mark = hashOf(std::to_string(size));
     std::string bytes(std::size_t(std::min(size, kBytes)), '\0');

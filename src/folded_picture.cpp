@@ -10,6 +10,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/slab_part.h"
 #include "image/clear_image.h"
+#include "image/put_behind.h"
 #include "memory.h"
 #include "part_header.h"
 #include "picture_part.h"
@@ -167,7 +168,12 @@ void FoldedPicture::show(const PixelBox& part, Image& image) {
     clearImage(image);
     RenderStats& stats = impl_->stats;
     for (const Impl::View& view : impl_->views) {
-        const double gain = view.plane.showPart(view.layer, PicturePart(image, part.min, size));
+        const bool isFirst = &view == &impl_->views.front();
+        Image behind;
+        if (!isFirst) behind = clearImage(part.size());
+        Image& shown = isFirst ? image : behind;
+        const double gain = view.plane.showPart(view.layer, PicturePart(shown, part.min, size));
+        if (!isFirst) putBehind(image, {0, 0}, behind);
         stats.errorBoundColor = std::max(stats.errorBoundColor, view.bound.color * gain);
         stats.errorBoundAlpha = std::max(stats.errorBoundAlpha, view.bound.alpha * gain);
     }

@@ -14,12 +14,14 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "default_floats.h"
 #include "deltasplat/cut/cut_volume.h"
 #include "deltasplat/error.h"
 #include "deltasplat/prepared_scene.h"
 #include "dims_text.h"
+#include "far_groups.h"
 #include "luminance.h"
 #include "memory.h"
 #include "number_text.h"
@@ -191,26 +193,24 @@ Optics hidingOptics(const Volume& volume, Optics optics) {
     return optics;
 }
 
+// What throws a shadow.
+struct Hiding {
+    PreparedScene scene;
+    SeenBall ball;
+};
+
 // Adds up what lights lose on their way to the places.
 class LostLight {
   public:
     LostLight(const SeenGround& ground, const Camera& camera, const glm::dvec3& normal)
         : ground_(ground), camera_(camera), normal_(normal), lost_(ground.places().size()) {}
 
-    void add(const PreparedScene& scene, const SeenBall& ball, const Light& light,
-             const Listener& listener) {
-        const LightCamera lightCamera(light, ball, camera_);
-        // Half a pixel, for what is read between pixels is blurred; what is finer than half a voxel
-        // is not there.
-        const double finest = 0.5 * std::max(ground_.finestPixel(lightCamera), ball.voxel);
-        const Camera camera = lightCamera.of(finest);
-        requireMemory("`ground`", 16.0 * camera.sizePixels.x * camera.sizePixels.y);
-        Image image(camera.sizePixels);
-        // An empty one is no reason to warn.
-        renderer_.render(scene, camera, image, {listener.progress, {}});
+    // @param hiding  what throws a shadow, each in a picture of its own
+    void add(const std::vector<Hiding>& hiding, const Light& light) {
+        std::vector<double> hidden(lost_.size());
+        for (const Hiding& one : hiding) hide(one.scene, one.ball, light, hidden);
         forPlaces([&](std::size_t i, const SeenPlace& place) {
-            const double share = alphaAt(image, camera, place.world);
-            if (share > 0) lost_[i] += share * irradianceAt(light, place.world, normal_);
+            if (hidden[i] > 0) lost_[i] += hidden[i] * irradianceAt(light, place.world, normal_);
         });
     }
 
@@ -238,6 +238,24 @@ class LostLight {
         ground_.forRows([&](std::size_t first, int) {
             for (std::size_t i = first; i < first + std::size_t(camera_.sizePixels.x); ++i)
                 if (ground_.places()[i].pixelWorld > 0) use(i, ground_.places()[i]);
+        });
+    }
+
+    // Adds what is hidden of a light by one that throws a shadow.
+    void hide(const PreparedScene& scene, const SeenBall& ball, const Light& light,
+              std::vector<double>& hidden) {
+        const LightCamera lightCamera(light, ball, camera_);
+        // Half a pixel, for what is read between pixels is blurred; what is finer than half a voxel
+        // is not there.
+        const double finest = 0.5 * std::max(ground_.finestPixel(lightCamera), ball.voxel);
+        const Camera camera = lightCamera.of(finest);
+        requireMemory("`ground`", 16.0 * camera.sizePixels.x * camera.sizePixels.y);
+        Image image(camera.sizePixels);
+        // An empty one is no reason to warn.
+        renderer_.render(scene, camera, image, {});
+        forPlaces([&](std::size_t i, const SeenPlace& place) {
+            const double share = alphaAt(image, camera, place.world);
+            if (share > 0) hidden[i] += (1 - hidden[i]) * share;
         });
     }
 
@@ -275,12 +293,20 @@ Image renderGroundShadow(const Volume& volume, const RenderOptions& options, con
     SplatOptions splat;
     splat.method = options.method;
     splat.between = 0;  // lit fog is drawn by whole voxels
-    const PreparedScene scene({above, hidingOptics(volume, options.optics)}, splat);
-    const SeenBall ball(*above);
+    std::vector<Hiding> hiding;
+    const auto addHiding = [&](const std::shared_ptr<const Volume>& one) {
+        hiding.push_back(
+            {PreparedScene({one, hidingOptics(volume, options.optics)}, splat), SeenBall(*one)});
+    };
+    // Voxels that lie far apart, for a picture of all would show none.
+    const std::optional<FarGroups> far = FarGroups::find(*above);
+    for (std::size_t i = 0; far && i < far->size(); ++i)
+        addHiding(std::make_shared<const Volume>(far->volume(i)));
+    if (!far) addHiding(above);
     LostLight lost(seen, camera, normal);
     for (std::size_t i = 0; i < lights.size(); ++i) {
         // Reported between pictures: each is short.
-        lost.add(scene, ball, lights[i], {});
+        lost.add(hiding, lights[i]);
         listener.report(double(i + 1) / double(lights.size()));
     }
     return lost.shares(lights, scattering.ambient);

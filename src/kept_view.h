@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "composite/layer.h"
+#include "deltasplat/image/pixel_box.h"
 #include "picture_view.h"
 
 namespace deltasplat {
@@ -13,6 +14,10 @@ namespace deltasplat {
 struct KeptView {
     std::unique_ptr<const PictureView> picture;
     Layer layer;
+    /// Where voxels lie far apart: the group that it shows, and the pixels that may show it; it
+    /// goes behind views before it.
+    std::shared_ptr<const PreparedScene::Impl> group = nullptr;
+    PixelBox part{};
 };
 
 /// As renderComposite, but for the warp: what it would show.

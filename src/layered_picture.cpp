@@ -9,6 +9,7 @@
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "image/clear_image.h"
+#include "image/put_behind.h"
 #include "layered_views.h"
 #include "memory.h"
 
@@ -77,9 +78,21 @@ LayeredPicture::Impl::Impl(const PreparedScene& ofScene, const Camera& ofCamera,
             gotExpected("`mostJoined`", std::to_string(prepared.options.mostJoined) + " for slabs",
                         "1 or 2"));
     }
-    const Volume& volume = *prepared.scene.volume;
+    if (!prepared.far) {
+        addViews(prepared, listener);
+        return;
+    }
+    for (const std::size_t number : prepared.far->frontToBack(camera)) {
+        if (prepared.far->seenBy(camera, number).isNothing()) continue;
+        groups.push_back(std::make_unique<PreparedScene::Impl>(prepared, number));
+        addViews(*groups.back(), listener);
+    }
+    prepared.far->warnOfDots(camera, listener);
+}
+
+void LayeredPicture::Impl::addViews(const PreparedScene::Impl& prepared, const Listener& listener) {
     const ViewPlan plan(prepared, camera, false, listener);
-    if (volume.empty()) return;
+    if (prepared.scene.volume->empty()) return;
     for (const Factorization& view : plan.views) {
         auto axis = prepared.axis(view, plan.sheets, listener, &camera);
         views.push_back(std::make_unique<PictureView>(prepared, camera, view, plan.sheets,
@@ -160,7 +173,11 @@ void LayeredPicture::fold(std::span<const SlabLayer> layers, Image& image) const
                                y);
             }
         }
-        picture.views[view]->show(merged, image);
+        const bool isFirst = view == 0;
+        Image behind;
+        if (!isFirst) behind = clearImage(image.size);
+        picture.views[view]->show(merged, PicturePart(isFirst ? image : behind));
+        if (!isFirst) putBehind(image, {0, 0}, behind);
     }
 }
 

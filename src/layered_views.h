@@ -21,6 +21,7 @@ struct LayeredPicture::Impl {
 
     Impl(const PreparedScene& ofScene, const Camera& ofCamera, const Listener& listener);
 
+    void addViews(const PreparedScene::Impl& prepared, const Listener& listener);
     /// @throw Error(kUsage) if there is no such slab
     const Place& placeOf(int slab) const;
     const SlabInput& inputOf(const Place& place) const { return views[place.view]->slabs(); }
@@ -35,6 +36,7 @@ struct LayeredPicture::Impl {
     PreparedScene scene;
     Camera camera;
     mutable KeptMemory memory;
+    std::vector<std::unique_ptr<const PreparedScene::Impl>> groups;  ///< that lie far apart
     std::vector<std::unique_ptr<const PictureView>> views;
     std::vector<std::vector<SeenSlab>> seen;  ///< [view]
     std::vector<Place> slabs;

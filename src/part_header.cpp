@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "checked_json.h"
 #include "deltasplat/error.h"
 
 namespace deltasplat {
@@ -50,7 +51,7 @@ std::string headerText(const PartHeader& header) {
 }
 
 PartHeader headerOf(const std::string& text) {
-    const Json json = Json::parse(text);
+    const Json json = parseCheckedJson(text, "header", "that of a part");
     PartHeader header;
     const Json &share = json.at("share"), &slabs = json.at("slabs");
     header.share = {share.at(0).get<int>(), share.at(1).get<int>(), share.at(2).get<int>()};

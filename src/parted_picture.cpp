@@ -2,10 +2,12 @@
 #include "deltasplat/parted_picture.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <vector>
 
 #include "default_floats.h"
 #include "image/clear_image.h"
+#include "image/put_behind.h"
 #include "kept_memory.h"
 #include "kept_view.h"
 #include "picture_part.h"
@@ -47,9 +49,22 @@ void PartedPicture::show(const PixelBox& part, Image& image) {
     const Clock::time_point start = Clock::now();
     clearImage(image);
     RenderStats& stats = impl_->stats;
+    const glm::ivec2 size = impl_->camera.sizePixels;
     for (const KeptView& view : impl_->views) {
-        const double gain = view.picture->showPart(
-            view.layer, PicturePart(image, part.min, impl_->camera.sizePixels));
+        const auto showIn = [&](Image& shown, glm::ivec2 first) {
+            return view.picture->showPart(view.layer, PicturePart(shown, first, size));
+        };
+        double gain = 0;
+        if (!view.group) {
+            gain = showIn(image, part.min);
+        } else {
+            const PixelBox both{glm::max(part.min, view.part.min),
+                                glm::min(part.max, view.part.max)};
+            if (both.empty()) continue;
+            Image behind = clearImage(both.size());
+            gain = showIn(behind, both.min);
+            putBehind(image, both.min - part.min, behind);
+        }
         const ErrorBound bound = view.picture->errorBound();
         stats.errorBoundColor = std::max(stats.errorBoundColor, bound.color * gain);
         stats.errorBoundAlpha = std::max(stats.errorBoundAlpha, bound.alpha * gain);

@@ -94,7 +94,8 @@ SlabFacts factsOf(const Picture& picture) {
 
 bool isReadByParts(const Picture& picture) {
     const PreparedScene::Impl& scene = picture.scene.impl();
-    if (picture.views.size() != 1 || scene.painter || !scene.options.tolerance.isExact())
+    if (picture.views.size() != 1 || scene.far || scene.painter ||
+        !scene.options.tolerance.isExact())
         return false;
     const PictureView& view = *picture.views.front();
     return view.slabs().plane.isParallel() && scene.scene.volume->origin &&

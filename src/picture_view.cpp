@@ -213,9 +213,9 @@ PlanePlace PictureView::placePlane() const {
     return place;
 }
 
-double PictureView::show(Layer& layer, Image& image) const {
+double PictureView::show(Layer& layer, const PicturePart& part) const {
     finish(layer);
-    return showPart(layer, PicturePart(image));
+    return showPart(layer, part);
 }
 
 ErrorBound PictureView::errorBound() const {

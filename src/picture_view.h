@@ -61,9 +61,10 @@ class PictureView {
     const PlaneView& plane() const { return *plane_; }
     /// From (slice, u, v) of the volume's own voxels to the world.
     glm::dmat4 worldFromSlices() const;
-    /// Writes what is seen of the base plane into the picture. Changes the layer on the way.
+    /// Writes what is seen of the base plane into a part of the picture. Changes the layer on the
+    /// way.
     /// @return the most that this can enlarge a difference of layers
-    double show(Layer& layer, Image& image) const;
+    double show(Layer& layer, const PicturePart& part) const;
     /// Makes of a layer, once, what showPart() shows.
     void finish(Layer& layer) const { plane_->finish(layer); }
     /// Writes what is seen of a finished layer into a part of the picture.

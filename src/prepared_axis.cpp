@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "box_voxels.h"
 #include "default_floats.h"
 #include "delta/code_blocks.h"
 #include "delta/slab_facts.h"
@@ -219,7 +220,7 @@ std::size_t countBlocks(const PreparedScene::Impl& scene, int sliceAxis) {
 }  // namespace
 
 std::uint64_t PreparedAxis::stamps(Method method) const {
-    if (method == Method::kTraditional) return std::uint64_t(deltas().box.voxels());
+    if (method == Method::kTraditional) return voxelsOf(deltas().box);
     std::uint64_t stamps = 0;
     for (const PlannedSlab& slab : deltas().slabs) stamps += slab.stamps();
     return stamps;
@@ -245,7 +246,19 @@ PreparedScene::Impl::Impl(Scene ofScene, SplatOptions withOptions, bool forOne, 
     const BlockSet* more = painter ? painter->more() : nullptr;
     if (more && !more->positions.empty())
         scene.volume = std::make_shared<const Volume>(withRoom(*scene.volume, *more));
+    far = FarGroups::find(*scene.volume, more);
 }
+
+// What is known of all is known of a group: its colours, and light that others leave of it.
+PreparedScene::Impl::Impl(const Impl& whole, std::size_t group)
+    : given(whole.given),
+      scene{std::make_shared<const Volume>(whole.far->volume(group)), whole.scene.optics},
+      painter(whole.painter),
+      optics(whole.optics),
+      options(whole.options),
+      isThin(whole.isThin),
+      isForOne(whole.isForOne),
+      wordBytes(whole.wordBytes) {}
 
 PreparedScene::Impl::Impl(const Impl& before, Optics others)
     : Impl({before.given, std::move(others)}, before.options, before.isForOne, before.axes()) {}

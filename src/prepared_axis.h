@@ -11,6 +11,7 @@
 #include "delta/packed_deltas.h"
 #include "delta/slice_joiner.h"
 #include "deltasplat/prepared_scene.h"
+#include "far_groups.h"
 #include "join_judge.h"
 #include "kept_memory.h"
 #include "optics/color_curve.h"
@@ -50,14 +51,18 @@ struct PreparedScene::Impl {
         : Impl(std::move(ofScene), withOptions, forOne, Axes()) {}
     /// The same volume seen by other optics.
     Impl(const Impl& before, Optics others);
+    /// A group of a scene's voxels, as that shows them.
+    Impl(const Impl& whole, std::size_t group);
 
     std::shared_ptr<const Volume> given;  ///< before it got room for what a painter adds
     Scene scene;
-    std::unique_ptr<const VoxelPainter> painter;  ///< of own looks; null: there are none
+    std::shared_ptr<const VoxelPainter> painter;  ///< of own looks; null: there are none
     Optics optics;  ///< with the range that the volume has, and white if painted colours are others
     SplatOptions options;
     bool isThin;
     bool isForOne;
+    /// Where voxels lie far apart: their groups, each of which is drawn as a scene of its own.
+    std::optional<FarGroups> far;
     /// The most that words of an axis are to take where a picture may be made in parts.
     double wordBytes = 256.0 * 1024 * 1024;
 

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: The Unicode Standard, version 15, table 3-7, "Well-Formed UTF-8 Byte Sequences".
+// Based on: The Unicode Standard, version 15, table 3-7, "Well-Formed UTF-8 Byte Sequences", and
+// section 23.2, "Layout Controls".
 #include "printable.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
 
 namespace deltasplat {
 namespace {
@@ -24,11 +29,31 @@ std::size_t characterBytes(const std::string& text, std::size_t i) {
     return count;
 }
 
-// U+0000 to U+001F and U+007F to U+009F.
+struct Range {
+    std::uint32_t first, last;
+};
+
+// What controls a terminal, turns the order of what stands beside it, ends a line or is not seen.
+// Joiners (U+200C, U+200D), which words of some scripts need, stay.
+constexpr std::array kControls{
+    Range{0x0, 0x1f},      Range{0x7f, 0x9f},     Range{0xad, 0xad},     Range{0x61c, 0x61c},
+    Range{0x180e, 0x180e}, Range{0x200b, 0x200b}, Range{0x200e, 0x200f}, Range{0x2028, 0x202e},
+    Range{0x2060, 0x206f}, Range{0xfeff, 0xfeff}, Range{0xfff9, 0xfffb}, Range{0xe0000, 0xe007f}};
+
+std::uint32_t codeOf(const std::string& text, std::size_t i, std::size_t bytes) {
+    const auto byte = [&](std::size_t k) {
+        return std::uint32_t(static_cast<unsigned char>(text[i + k]));
+    };
+    std::uint32_t code = bytes == 1 ? byte(0) : byte(0) & (0x7fU >> bytes);
+    for (std::size_t k = 1; k < bytes; ++k) code = code << 6 | (byte(k) & 0x3fU);
+    return code;
+}
+
 bool controls(const std::string& text, std::size_t i, std::size_t bytes) {
-    const unsigned first = static_cast<unsigned char>(text[i]);
-    if (bytes == 1) return first < ' ' || first == 0x7f;
-    return first == 0xc2 && static_cast<unsigned char>(text[i + 1]) < 0xa0;
+    const std::uint32_t code = codeOf(text, i, bytes);
+    return std::any_of(kControls.begin(), kControls.end(), [&](const Range& range) {
+        return range.first <= code && code <= range.last;
+    });
 }
 
 }  // namespace

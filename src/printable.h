@@ -5,8 +5,8 @@
 
 namespace deltasplat {
 
-/// Returns foreign text fit for a message, which is one line of UTF-8: what controls a terminal,
-/// and each byte that is none of a UTF-8 character, is "?".
+/// Returns foreign text fit for a message, which is one line of UTF-8: what controls a terminal or
+/// the order of text, is not seen, or is no UTF-8, is "?" (of bytes that are none, each).
 std::string printable(const std::string& text);
 
 }  // namespace deltasplat

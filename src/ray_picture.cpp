@@ -99,11 +99,12 @@ void warnOfValues(const Volume& volume, const RenderOptions& options, int slices
 }
 
 ValuePainter::ValuePainter(const Volume& volume, const RenderOptions& options,
-                           const RayVolume& rays)
+                           const RayVolume& rays, bool keepsFound)
     : lowest_(rays.lowest),
       highest_(rays.highest),
       darkest_(std::min(rays.lowest, 0.0f)),
-      sign_(options.mode == Mode::kMin ? -1.0f : 1.0f) {
+      sign_(options.mode == Mode::kMin ? -1.0f : 1.0f),
+      keepsFound_(keepsFound) {
     if (options.mipColors) colors_.emplace(volume, options.optics);
 }
 
@@ -111,6 +112,12 @@ void ValuePainter::paint(const FoundValue& found, float* rgba) const {
     rgba[3] = found.isMet ? 1.0f : 0.0f;
     if (!found.isMet) {
         std::fill_n(rgba, 3, 0.0f);
+        return;
+    }
+    if (keepsFound_) {
+        rgba[0] = found.value;
+        rgba[1] = found.shade;
+        rgba[2] = found.weight;
         return;
     }
     // No -0.

@@ -2,194 +2,228 @@
 #include "ray_render.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
+#include <vector>
 
-#include "deltasplat/ingest/slot.h"
+#include "deltasplat/threads.h"
 #include "empty_picture.h"
-#include "eye_render.h"
-#include "image/warp.h"
+#include "far_groups.h"
+#include "image/clear_image.h"
+#include "listener_part.h"
 #include "parallel.h"
 #include "ray_picture.h"
-#include "rays/blur_plane.h"
 #include "rays/depth_shade.h"
-#include "rays/follow_rays.h"
+#include "rays/picture_lines.h"
+#include "rays/ray_follower.h"
+#include "shared_progress.h"
 #include "stopwatch.h"
+#include "view/affine.h"
 
 namespace deltasplat {
 namespace {
 
-// Sheet pixels a voxel.
-constexpr int kResolution = 1;
+// Lines of sight along each side of a tile, of which what they read of eight slices stays in the
+// second-level cache.
+constexpr int kTileLines = 32;
 
-// A voxel stands for itself: what is between is for the warp to find.
-Footprint singlePixel() {
-    Footprint footprint;
-    footprint.weights = {Footprint::kOne};
-    return footprint;
+RayRule ruleOf(Mode mode) {
+    if (showsSums(mode)) return RayRule::kSum;
+    if (mode == Mode::kAverage) return RayRule::kMean;
+    return mode == Mode::kMin ? RayRule::kMaxActive : RayRule::kMax;
 }
 
-Footprint footprintOf(const RenderOptions& options, glm::dvec2 shiftPerSlice) {
-    if (!showsSums(options.mode) || !options.sigma) return singlePixel();
-    return makeFootprint(*options.sigma, shiftPerSlice, kResolution, options.footprintWidth);
-}
-
-Raster rasterOf(const RayPlane& plane) {
-    return {plane.box.min, plane.box.size(), plane.values.data(), 1};
-}
-
-// Splits a plane of values into whether anything is met (1 or 0), and the value there.
-RayPlane splitMet(RayPlane& plane) {
-    RayPlane met(plane.box);
-    parallelForChunks(plane.values.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            met.values[i] = std::isinf(plane.values[i]) ? 0.0f : 1.0f;
-            if (met.values[i] == 0) plane.values[i] = 0;
-        }
-    });
-    return met;
-}
-
-// Makes means of sums, and of how much of each pixel's way is in active voxels; where none is,
-// -infinity.
-void divideByCounts(const RayPlane& counts, RayPlane& sums) {
-    parallelForChunks(sums.values.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const float count = counts.values[i];
-            sums.values[i] =
-                count > 0 ? sums.values[i] / count : -std::numeric_limits<float>::infinity();
-        }
-    });
-}
-
-// Makes the picture of values, of what is met and of shades, all warped: a pixel is met where it is
-// by half or more, and has the means of the values and shades that are.
-void combineMet(const Image& met, const Image* shade, const ValuePainter& painter, Image& image) {
-    parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
-        float* rgba = image.pixel(0, int(y));
-        const float* share = met.pixel(0, int(y));
-        const float* shades = shade ? shade->pixel(0, int(y)) : nullptr;
-        for (int x = 0; x < image.size.x; ++x, rgba += 4, share += 4) {
-            FoundValue found;
-            found.isMet = share[3] >= 0.5f;
-            if (found.isMet) {
-                found.value = rgba[3] / share[3];
-                if (shades) found.shade = std::min(shades[4 * x + 3] / share[3], 1.0f);
-            }
-            painter.paint(found, rgba);
-        }
-    });
-}
-
-// A parallel picture on its way: what lies where, and what it is for.
-struct ParallelView {
-    const Volume& volume;
-    const RenderOptions& options;
-    const Camera& camera;
-    const Factorization& factors;
-};
-
-// How deep along the line of sight places in the volume lie, counted from its first voxel; from one
-// to the next.
-glm::dvec3 depthSteps(const ParallelView& view) {
-    const glm::dmat3 linear(view.volume.worldFromIndex);
-    const glm::ivec3 order = sliceOrder(view.factors.sliceAxis);
-    glm::dvec3 steps;
-    for (int i = 0; i < 3; ++i) steps[i] = glm::dot(linear[order[i]], view.camera.direction);
-    return steps;
-}
-
-DepthShade shadeOf(const ParallelView& view, const glm::dvec3& steps, const IndexBox& box) {
-    DepthShade shade{view.options.depthShade, 0, 0};
-    for (int axis = 0; axis < 3; ++axis) {
-        const double way = steps[axis] * (box.dims()[axis] - 1);
-        shade.nearest += std::min(way, 0.0);
-        shade.farthest += std::max(way, 0.0);
+// The farthest that anything of the box is from the camera, and the nearest that is seen.
+DepthShade shadeOf(const RayTask& task) {
+    const Camera& camera = task.camera;
+    const double darker = task.options.mode == Mode::kMip ? task.options.depthShade : 0;
+    const bool panorama = camera.projection == Projection::kLatlong;
+    DepthShade shade{darker, std::numeric_limits<double>::infinity(),
+                     -std::numeric_limits<double>::infinity()};
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 index(cornerOf(task.whole, corner), 1);
+        const glm::dvec3 away = glm::dvec3(task.volume.worldFromIndex * index) - camera.eyeWorld();
+        const double depth = panorama ? glm::length(away) : glm::dot(away, camera.direction);
+        shade.nearest = std::min(shade.nearest, depth);
+        shade.farthest = std::max(shade.farthest, depth);
     }
+    if (camera.projection == Projection::kOrtho) return shade;
+    // A face may be nearer to what sees all sides than its corners.
+    shade.nearest = panorama ? camera.nearWorld : std::max(shade.nearest, camera.nearWorld);
     return shade;
 }
 
-// Turns the slices that values are from into shades; nothing has none.
-void shadePlaces(const ParallelView& view, const IndexBox& box, const SheetLayout& layout,
-                 const BasePlane& basePlane, const RayPlane& met, RayPlane& places) {
-    const glm::dvec3 steps = depthSteps(view);
-    const DepthShade shade = shadeOf(view, steps, box);
-    const glm::dvec2 first = layout.firstVoxel - glm::ivec2(box.min.z, box.min.y);
-    const glm::ivec2 size = places.box.size();
-    parallelFor(std::size_t(size.y), [&](std::size_t row) {
-        float* out = &places.values[row * std::size_t(size.x)];
-        const float* isMet = &met.values[row * std::size_t(size.x)];
-        for (int x = 0; x < size.x; ++x) {
-            const int slice = int(out[x]);
-            const glm::ivec2 pixel(places.box.min.x + x, places.box.min.y + int(row));
-            const glm::dvec2 at =
-                first + basePlane.positionOf(pixel) + basePlane.placeOf(box.min.x + slice).offset;
-            const double depth = glm::dot(steps, glm::dvec3(slice, at.y, at.x));
-            out[x] = isMet[x] * shade.at(depth);
+// All that the pixels of a picture have in common.
+class RayPicture {
+  public:
+    RayPicture(const RayTask& task, const RayVolume& rays)
+        : mode_(task.options.mode),
+          rays_(rays),
+          part_(task.part),
+          lines_(task.volume, task.camera, linesPerSide(task.volume, task.camera)),
+          painter_(task.volume, task.options, rays, task.keepsFound),
+          shade_(shadeOf(task)) {}
+
+    // @param image  of the part
+    void render(Image& image, const Listener& listener) const {
+        const int pixels = std::max(1, kTileLines / lines_.perSide());
+        const glm::ivec2 tiles = (image.size + pixels - 1) / pixels;
+        const int count = tiles.x * tiles.y;
+        std::atomic<int> next = 0;
+        std::atomic<int> done = 0;
+        SharedProgress progress(listener);
+        parallelFor(std::size_t(std::min(threadCount(), count)), [&](std::size_t) {
+            Tile tile{RayFollower(rays_, ruleOf(mode_)), {}, {}, {}};
+            for (int i = next++; i < count; i = next++) {
+                const glm::ivec2 first = pixels * glm::ivec2(i % tiles.x, i / tiles.x);
+                paintTile(first, glm::min(first + pixels, image.size), tile, image);
+                progress.report(0.1 + 0.8 * ++done / count);
+            }
+        });
+    }
+
+  private:
+    struct Tile {
+        RayFollower follower;
+        std::vector<PictureLine> lines;
+        std::vector<SightRay> rays;
+        std::vector<RayFound> found;
+    };
+
+    void paintTile(glm::ivec2 first, glm::ivec2 last, Tile& tile, Image& image) const {
+        const int n = lines_.perSide();
+        const glm::ivec2 from = n * (part_.min + first);
+        const glm::ivec2 to = n * (part_.min + last);
+        tile.lines.clear();
+        tile.rays.clear();
+        for (int y = from.y; y < to.y; ++y) {
+            for (int x = from.x; x < to.x; ++x) {
+                tile.lines.push_back(lines_.at(x, y));
+                tile.rays.push_back(tile.lines.back().ray);
+            }
         }
-    });
-}
+        tile.found.resize(tile.rays.size());
+        tile.follower.follow(tile.rays, tile.found);
+        const int width = n * (last.x - first.x);
+        for (int y = first.y; y < last.y; ++y) {
+            for (int x = first.x; x < last.x; ++x)
+                paint(tile, std::size_t(n * (y - first.y) * width + n * (x - first.x)), width,
+                      image.pixel(x, y));
+        }
+    }
 
-RayRule parallelRule(Mode mode) {
-    if (mode == Mode::kMip) return RayRule::kMax;
-    // Means are sums divided by counts.
-    return mode == Mode::kMin ? RayRule::kMaxActive : RayRule::kSum;
-}
+    // The mean of what a pixel's lines of sight find.
+    void paint(const Tile& tile, std::size_t at, int width, float* rgba) const {
+        const int n = lines_.perSide();
+        double value = 0;
+        double shade = 0;
+        double weight = 0;
+        int met = 0;
+        for (int j = 0; j < n; ++j, at += std::size_t(width)) {
+            for (std::size_t i = at; i < at + std::size_t(n); ++i) {
+                const RayFound& found = tile.found[i];
+                const PictureLine& line = tile.lines[i];
+                if (!found.isMet) continue;
+                value += found.value * (showsSums(mode_) ? line.lengthWorld : 1);
+                shade += mode_ == Mode::kMip ? shade_.at(line.depthAt(found.slice)) : 1;
+                weight += found.weight;
+                ++met;
+            }
+        }
+        if (showsSums(mode_)) {
+            std::fill_n(rgba, 4, float(value / (n * n)));
+        } else if (2 * met >= n * n) {
+            painter_.paint({float(value / met), float(shade / met), true, float(weight)}, rgba);
+        }
+    }
 
-void renderParallel(const ParallelView& view, const Listener& listener, RenderResult& result) {
+    Mode mode_;
+    const RayVolume& rays_;
+    PixelBox part_;
+    PictureLines lines_;
+    ValuePainter painter_;
+    DepthShade shade_;
+};
+
+// @param image  of the task's part
+void renderTask(const RayTask& task, const Listener& listener, Image& image, RenderStats& stats) {
     const Clock::time_point start = Clock::now();
-    const auto& [volume, options, camera, factors] = view;
-    const RayRule rule = parallelRule(options.mode);
-    const RayVolume rays = makeRayVolume(volume, factors.sliceAxis, rule, valueMapOf(options));
-    RenderStats& stats = result.stats;
-    stats.prepareSeconds = secondsSince(start);
-
-    const Clock::time_point renderStart = Clock::now();
-    const Footprint footprint =
-        footprintOf(options, {factors.shiftPerSlice.y, factors.shiftPerSlice.x});
-    const SheetLayout layout = layoutSheet(rays.box, footprint, 1);
-    const BasePlane basePlane(factors, layout.firstSlice, layout.firstVoxel, layout.resolution,
-                              layout.offsetPixels);
-    const bool shades = options.mode == Mode::kMip && options.depthShade > 0;
-    RayPlanes planes = followRays({rays, rule, layout, basePlane, shades}, listener);
-    RayPlane& plane = planes.values;
+    const RayRule rule = ruleOf(task.options.mode);
+    const RayVolume rays = makeRayVolume(task.volume, rule, valueMapOf(task.options));
+    const RayPicture picture(task, rays);
+    stats.prepareSeconds += secondsSince(start);
     stats.visible = rays.visible;
-    if (options.mode == Mode::kAverage) {
-        const RayVolume ones =
-            makeRayVolume(volume, factors.sliceAxis, rule, {.scale = 0, .offset = 1});
-        divideByCounts(followRays({ones, rule, layout, basePlane}, listener).values, plane);
-        stats.visible = ones.visible;
-    }
-    stats.splatSeconds = secondsSince(renderStart);
-
-    const glm::dmat3& map = basePlane.pixelFromPicture();
-    if (showsSums(options.mode)) {
-        plane = blurPlane(plane, footprint, float(factors.sliceStepWorld));
-        stats.compositeSeconds = secondsSince(renderStart) - stats.splatSeconds;
-        warp(rasterOf(plane), map, WarpFilter::kSmooth, result.image);
-    } else {
-        const RayPlane met = splitMet(plane);
-        if (shades) shadePlaces(view, rays.box, layout, basePlane, met, *planes.places);
-        stats.compositeSeconds = secondsSince(renderStart) - stats.splatSeconds;
-        Image share(result.image.size);
-        Image shade(shades ? result.image.size : glm::ivec2(0));
-        warp(rasterOf(met), map, WarpFilter::kLinear, share);
-        if (shades) warp(rasterOf(*planes.places), map, WarpFilter::kLinear, shade);
-        warp(rasterOf(plane), map, WarpFilter::kLinear, result.image);
-        combineMet(share, shades ? &shade : nullptr, ValuePainter(volume, options, rays),
-                   result.image);
-    }
-    stats.resolution = kResolution;
-    stats.footprint = footprint.width;
-    stats.renderSeconds = secondsSince(renderStart);
-    stats.warpSeconds = stats.renderSeconds - stats.splatSeconds - stats.compositeSeconds;
+    const Clock::time_point renderStart = Clock::now();
+    picture.render(image, listener);
+    stats.footprint = 1;
+    const double seconds = secondsSince(renderStart);
+    stats.splatSeconds += seconds;
+    stats.renderSeconds += seconds;
 }
 
 bool isEmpty(const Image& image) {
     for (std::size_t i = 3; i < image.rgba.size(); i += 4)
         if (image.rgba[i] != 0) return false;
     return true;
+}
+
+// Puts what a group of voxels shows to what others do.
+// @param found  of a part of the picture
+void putTogether(const Image& found, glm::ivec2 first, Mode mode, Image& all) {
+    parallelFor(std::size_t(found.size.y), [&](std::size_t y) {
+        const float* rgba = found.pixel(0, int(y));
+        float* out = all.pixel(first.x, first.y + int(y));
+        for (int x = 0; x < found.size.x; ++x, rgba += 4, out += 4) {
+            if (showsSums(mode)) {
+                for (int c = 0; c < 4; ++c) out[c] += rgba[c];
+                continue;
+            }
+            FoundValue one = ValuePainter::keptIn(rgba);
+            const FoundValue before = ValuePainter::keptIn(out);
+            if (!one.isMet) continue;
+            if (before.isMet && mode == Mode::kAverage) {
+                one.value = (before.weight * before.value + one.weight * one.value) /
+                            (before.weight + one.weight);
+                one.weight += before.weight;
+            } else if (before.isMet && before.value >= one.value) {
+                continue;
+            }
+            out[0] = one.value;
+            out[1] = one.shade;
+            out[2] = one.weight;
+            out[3] = 1;
+        }
+    });
+}
+
+// Follows rays through groups of voxels that lie far apart, one after the other.
+void renderFar(const FarGroups& far, const RayTask& whole, const Listener& listener,
+               RenderResult& result) {
+    const std::vector<std::size_t> order = far.frontToBack(whole.camera);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const FarGroups::Seen seen = far.seenBy(whole.camera, order[i]);
+        if (seen.isNothing()) continue;
+        const Volume volume = far.volume(order[i]);
+        Image image = clearImage(seen.part.size());
+        const double count = double(order.size());
+        renderTask({volume, whole.options, whole.camera, seen.part, whole.whole, true},
+                   partOf(listener, double(i) / count, double(i + 1) / count), image, result.stats);
+        putTogether(image, seen.part.min, whole.options.mode, result.image);
+    }
+    far.warnOfDots(whole.camera, listener);
+    if (showsSums(whole.options.mode)) return;
+    // The range of values is that of all in whatever group.
+    const Volume one = far.volume(0);
+    const RayVolume rays = makeRayVolume(one, RayRule::kMax, valueMapOf(whole.options));
+    const ValuePainter painter(whole.volume, whole.options, rays);
+    parallelFor(std::size_t(result.image.size.y), [&](std::size_t y) {
+        float* rgba = result.image.pixel(0, int(y));
+        for (int x = 0; x < result.image.size.x; ++x, rgba += 4)
+            painter.paint(ValuePainter::keptIn(rgba), rgba);
+    });
 }
 
 }  // namespace
@@ -204,11 +238,14 @@ void renderRays(const Volume& volume, const RenderOptions& options, const Listen
     result.stats.sliceAxis = view.sliceAxis;
     result.stats.slices = volume.box.dims()[view.sliceAxis];
     if (!volume.empty()) {
-        warnOfValues(volume, options, result.stats.slices, view.sliceStepWorld, listener);
-        if (parallel) {
-            renderParallel({volume, options, result.camera, view}, listener, result);
+        const std::optional<FarGroups> far = FarGroups::find(volume);
+        const RayTask whole{
+            volume, options, result.camera, {{0, 0}, result.camera.sizePixels}, volume.box};
+        warnOfValues(volume, options, far ? 1 : result.stats.slices, view.sliceStepWorld, listener);
+        if (far) {
+            renderFar(*far, whole, listener, result);
         } else {
-            renderFromEye(volume, options, listener, result);
+            renderTask(whole, listener, result.image, result.stats);
         }
         // Sums may be 0 of what is there.
         if (!showsSums(options.mode) && isEmpty(result.image))

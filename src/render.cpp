@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "box_voxels.h"
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "dims_text.h"
@@ -82,7 +83,7 @@ RenderResult renderFrame(const Volume& volume, const RenderOptions& options,
         result.image = clearImage(result.camera.sizePixels);
     };
     RenderStats& stats = result.stats;
-    stats.voxels = std::uint64_t(volume.box.voxels());
+    stats.voxels = voxelsOf(volume.box);
     stats.mode = options.mode;
     stats.method = options.method;
     if (options.mode == Mode::kComposite) {

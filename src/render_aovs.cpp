@@ -12,6 +12,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/prepared_scene.h"
 #include "dims_text.h"
+#include "far_groups.h"
 #include "image/depth_builder.h"
 #include "kept_memory.h"
 #include "listener_part.h"
@@ -265,7 +266,17 @@ class AovRender {
         const Optics& optics = options_.optics;
         if (optics.scattering || optics.shading || !optics.parts.empty()) return 1;
         const PreparedScene scene({volume_, optics}, options_);
-        return ViewPlan(scene.impl(), camera_, false, {}).sheets.joined();
+        if (!scene.impl().far) return joinedOf(scene.impl());
+        int joined = kMostJoined;
+        for (std::size_t i = 0; i < scene.impl().far->size(); ++i) {
+            if (!scene.impl().far->seenBy(camera_, i).isNothing())
+                joined = std::min(joined, joinedOf(PreparedScene::Impl(scene.impl(), i)));
+        }
+        return joined;
+    }
+
+    int joinedOf(const PreparedScene::Impl& scene) const {
+        return ViewPlan(scene, camera_, false, {}).sheets.joined();
     }
 
     // Made for the first channel that needs it, as those below.
@@ -285,7 +296,8 @@ class AovRender {
 
     const std::vector<Place>& meanPlaces(const Listener& listener) {
         if (!places_.empty()) return places_;
-        if (isColored(options_.optics)) {
+        // Colours are too coarse for places that lie far apart.
+        if (isColored(options_.optics) || FarGroups::find(*volume_)) {
             findPlaces(depths(listener).mean());
         } else {
             findPlaces(picture(places(options_.optics), listener));

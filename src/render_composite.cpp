@@ -7,11 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "box_voxels.h"
 #include "deep_view.h"
 #include "default_floats.h"
 #include "deltasplat/prepared_scene.h"
 #include "empty_picture.h"
+#include "far_groups.h"
 #include "image/clear_image.h"
+#include "image/put_behind.h"
 #include "kept_memory.h"
 #include "kept_view.h"
 #include "listener_part.h"
@@ -27,6 +30,7 @@ namespace {
 // may be made of.
 struct Wanted {
     Image* image = nullptr;
+    glm::ivec2 first{0};  // pixel of the picture that the image begins with
     const DeepRequest* deep = nullptr;
     std::vector<KeptView>* views = nullptr;
     const FrameStep* step = nullptr;
@@ -65,7 +69,21 @@ class CompositeRender {
         }
         if (isCompared_ && shown_ > 0) stats_.changed = double(differing_) / double(shown_);
         if (rows_ > 0) stats_.kept = double(rowsKept_) / double(rows_);
-        warnOfEmptyPicture(listener);
+    }
+
+    // Who reads an empty volume has been told so.
+    void warnOfEmptyPicture(const Listener& listener) const {
+        if (volume_.empty() || isAnythingSeen()) return;
+        if (stats_.visible == 0 && !isAnythingVisible(listener)) {
+            const bool isSurface = scene_.scene.optics.surface.has_value();
+            listener.warn(
+                std::string("picture: empty, for ") +
+                (isSurface ? "the surface encloses" : "transfer function and extinction show") +
+                " none of the values " + numberText(volume_.valueMin) + " to " +
+                numberText(volume_.valueMax));
+        } else {
+            listener.warn(emptyPictureText(volume_, "is far smaller than a pixel"));
+        }
     }
 
   private:
@@ -96,6 +114,9 @@ class CompositeRender {
         stats_.renderSeconds += secondsSince(renderStart);
     }
 
+    // What of the picture is written.
+    PicturePart part() const { return {*wanted_.image, wanted_.first, camera_.sizePixels}; }
+
     void keep(std::unique_ptr<const PictureView> picture, const Listener& listener) {
         Layer merged = renderSlabs(picture->slabs(), kAllRows, partOf(listener, 0.2, 1));
         picture->finish(merged);
@@ -105,7 +126,7 @@ class CompositeRender {
     double showFlat(const PictureView& picture, const Listener& listener) {
         Layer merged = renderSlabs(picture.slabs(), kAllRows, partOf(listener, 0.2, 0.9));
         listener.report(0.95);
-        return timedWarp([&] { return picture.show(merged, *wanted_.image); });
+        return timedWarp([&] { return picture.show(merged, part()); });
     }
 
     // Makes words of a few slabs at a time, from the front on, and puts what they show behind what
@@ -146,7 +167,7 @@ class CompositeRender {
         const Clock::time_point start = Clock::now();
         countIn(*picture);
         listener.report(0.95);
-        countBound(*picture, timedWarp([&] { return picture->show(*merged, *wanted_.image); }));
+        countBound(*picture, timedWarp([&] { return picture->show(*merged, part()); }));
         stats_.renderSeconds += secondsSince(start);
     }
 
@@ -159,13 +180,12 @@ class CompositeRender {
         listener.report(0.95);
         if (picture->showChangesLayer()) {
             now.addLayer(std::make_shared<const Layer>(merged));
-            return timedWarp([&] { return picture->show(merged, *wanted_.image); });
+            return timedWarp([&] { return picture->show(merged, part()); });
         }
         const auto kept =
             std::make_shared<const HeldLayer>(wanted_.step->memory, std::move(merged));
         now.addLayer({kept, &kept->layer});
-        return timedWarp(
-            [&] { return picture->showPart(kept->layer, PicturePart(*wanted_.image)); });
+        return timedWarp([&] { return picture->showPart(kept->layer, part()); });
     }
 
     // Takes from the frame before what is the same in both.
@@ -253,24 +273,11 @@ class CompositeRender {
 
     // Whether any voxel can be seen from elsewhere, of a picture whose regions see none.
     bool isAnythingVisible(const Listener& listener) const {
+        // Groups that are not seen have not been asked.
+        if (scene_.far) return true;
         const Factorization& view = plan_->views.front();
         return view.eye &&
                scene_.axis(view, plan_->sheets, listener, nullptr, true)->deltas().visible() > 0;
-    }
-
-    // Who reads an empty volume has been told so.
-    void warnOfEmptyPicture(const Listener& listener) const {
-        if (volume_.empty() || isAnythingSeen()) return;
-        if (stats_.visible == 0 && !isAnythingVisible(listener)) {
-            const bool isSurface = scene_.scene.optics.surface.has_value();
-            listener.warn(
-                std::string("picture: empty, for ") +
-                (isSurface ? "the surface encloses" : "transfer function and extinction show") +
-                " none of the values " + numberText(volume_.valueMin) + " to " +
-                numberText(volume_.valueMax));
-        } else {
-            listener.warn(emptyPictureText(volume_, "is far smaller than a pixel"));
-        }
     }
 
     void countIn(const PreparedAxis& axis) {
@@ -283,7 +290,7 @@ class CompositeRender {
         stats_.sliceAxis = axis.sliceAxis;
         const IndexBox& box = axis.deltas().box;
         stats_.slices = box.dims().x;
-        stats_.voxels = std::uint64_t(box.voxels());
+        stats_.voxels = voxelsOf(box);
         stats_.visible = axis.deltas().visible();
         stats_.deltas = axis.deltas().deltas();
         stats_.slabs = int(axis.deltas().slabs.size());
@@ -337,6 +344,94 @@ class CompositeRender {
     double waitedSeconds_ = 0;  // for the frame before
 };
 
+// Shows stages of a picture behind another one.
+class StagesBehind : public DeepStages {
+  public:
+    StagesBehind(const Image& front, DeepStages& stages)
+        : front_(front), shown_(front.size), stages_(stages) {}
+
+    void begin(std::shared_ptr<const SliceDepths> depths) override {
+        stages_.begin(std::move(depths));
+    }
+    void add(const Image& picture, double front, double back) override {
+        shown_ = front_;
+        putBehind(shown_, {0, 0}, picture);
+        stages_.add(shown_, front, back);
+    }
+
+  private:
+    const Image& front_;
+    Image shown_;
+    DeepStages& stages_;
+};
+
+// Renders groups of voxels that lie far apart, each behind those before it.
+class FarRender {
+  public:
+    FarRender(const PreparedScene::Impl& scene, const Camera& camera, KeptMemory& memory,
+              const Wanted& wanted, RenderStats& stats)
+        : scene_(scene), camera_(camera), memory_(memory), wanted_(wanted), stats_(stats) {}
+
+    void run(const Listener& listener) {
+        const FarGroups& far = *scene_.far;
+        if (wanted_.image) clearImage(*wanted_.image);
+        const std::vector<std::size_t> order = far.frontToBack(camera_);
+        const double count = double(order.size());
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            const FarGroups::Seen seen = far.seenBy(camera_, order[i]);
+            if (seen.isNothing()) continue;
+            renderGroup(std::make_shared<const PreparedScene::Impl>(scene_, order[i]), seen.part,
+                        partOf(listener, double(i) / count, double(i + 1) / count));
+        }
+        far.warnOfDots(camera_, listener);
+    }
+
+  private:
+    void renderGroup(const std::shared_ptr<const PreparedScene::Impl>& group, const PixelBox& part,
+                     const Listener& listener) {
+        RenderStats stats = stats_;
+        stats.visible = stats.deltas = stats.voxels = 0;
+        stats.slices = 0;
+        const auto renderAs = [&](const Wanted& wanted) {
+            CompositeRender(*group, camera_, memory_, wanted, stats).run(listener);
+        };
+        if (wanted_.views) {
+            const std::size_t before = wanted_.views->size();
+            renderAs({.views = wanted_.views});
+            for (std::size_t i = before; i < wanted_.views->size(); ++i) {
+                (*wanted_.views)[i].group = group;
+                (*wanted_.views)[i].part = part;
+            }
+        } else if (wanted_.deep) {
+            Image flat = clearImage(camera_.sizePixels);
+            StagesBehind stages(*wanted_.image, wanted_.deep->stages);
+            const DeepRequest request{wanted_.deep->slicesPerSample, stages};
+            renderAs({.image = &flat, .deep = &request});
+            putBehind(*wanted_.image, {0, 0}, flat);
+        } else {
+            Image image = clearImage(part.size());
+            renderAs({.image = &image, .first = part.min});
+            putBehind(*wanted_.image, part.min, image);
+        }
+        countIn(stats);
+    }
+
+    // Counts are those of all groups.
+    void countIn(RenderStats stats) {
+        stats.visible += stats_.visible;
+        stats.deltas += stats_.deltas;
+        stats.voxels += stats_.voxels;
+        stats.slices = std::max(stats.slices, stats_.slices);
+        stats_ = stats;
+    }
+
+    const PreparedScene::Impl& scene_;
+    const Camera& camera_;
+    KeptMemory& memory_;
+    const Wanted& wanted_;
+    RenderStats& stats_;
+};
+
 RenderStats renderAs(const Wanted& wanted, const PreparedScene::Impl& scene, const Camera& camera,
                      KeptMemory& memory, const Listener& listener) {
     const DefaultFloats floats;
@@ -344,7 +439,13 @@ RenderStats renderAs(const Wanted& wanted, const PreparedScene::Impl& scene, con
     stats.mode = Mode::kComposite;
     stats.method = scene.options.method;
     stats.tolerance = scene.options.tolerance;
-    CompositeRender(scene, camera, memory, wanted, stats).run(listener);
+    CompositeRender render(scene, camera, memory, wanted, stats);
+    if (scene.far) {
+        FarRender(scene, camera, memory, wanted, stats).run(listener);
+    } else {
+        render.run(listener);
+    }
+    render.warnOfEmptyPicture(listener);
     return stats;
 }
 
@@ -363,8 +464,8 @@ RenderStats Renderer::render(const PreparedScene& scene, const Camera& camera, I
                              const Listener& listener) {
     requireSize(camera, image);
     // A parallel view writes every pixel.
-    const bool isWritten =
-        camera.projection == Projection::kOrtho && !scene.scene().volume->empty();
+    const bool isWritten = camera.projection == Projection::kOrtho &&
+                           !scene.scene().volume->empty() && !scene.impl().far;
     if (!isWritten) clearImage(image);
     const RenderStats stats = renderComposite(scene.impl(), camera, impl_->memory, image, listener);
     impl_->memory.endPicture();
@@ -379,13 +480,13 @@ RenderStats renderComposite(const PreparedScene& scene, const Camera& camera, Im
 RenderStats renderComposite(const PreparedScene::Impl& scene, const Camera& camera,
                             KeptMemory& memory, Image& image, const Listener& listener,
                             const DeepRequest* deep) {
-    return renderAs({&image, deep, nullptr}, scene, camera, memory, listener);
+    return renderAs({.image = &image, .deep = deep}, scene, camera, memory, listener);
 }
 
 RenderStats renderComposite(const FrameStep& step, const PreparedScene::Impl& scene,
                             const Camera& camera, Image& image, const Listener& listener) {
     const RenderStats stats =
-        renderAs({&image, nullptr, nullptr, &step}, scene, camera, *step.memory, listener);
+        renderAs({.image = &image, .step = &step}, scene, camera, *step.memory, listener);
     // What is held from now on is a layer, at most.
     step.memory->releaseIdle();
     return stats;
@@ -393,7 +494,7 @@ RenderStats renderComposite(const FrameStep& step, const PreparedScene::Impl& sc
 
 RenderStats renderKept(const PreparedScene::Impl& scene, const Camera& camera, KeptMemory& memory,
                        std::vector<KeptView>& views, const Listener& listener) {
-    return renderAs({nullptr, nullptr, &views}, scene, camera, memory, listener);
+    return renderAs({.views = &views}, scene, camera, memory, listener);
 }
 
 }  // namespace deltasplat

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <exception>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "checked_json.h"
 #include "default_floats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
@@ -27,6 +27,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kTitle = "deltasplat_slab_facts";
+constexpr const char* kFactsOfSlabs = "facts of a picture's slabs";
 constexpr const char* kSum = "sum";  // by which it is whole
 
 // As it is in a file, which is UTF-8 whatever names are.
@@ -125,15 +126,13 @@ SlabFacts factsOf(const Json& json, const std::filesystem::path& file) {
 }
 
 Json read(const std::filesystem::path& file) {
-    std::ifstream in(file);
-    if (!in) refuse(file, "a file that cannot be opened", "a readable file");
+    Json whole = readCheckedJson(file, kFactsOfSlabs);
     try {
-        const Json whole = Json::parse(in);
-        Json json = whole.at(kTitle);
+        Json json = std::move(whole.at(kTitle));
         if (wholeNumberOf<std::uint64_t>(whole.at(kSum)) == hashOf(dumped(json))) return json;
     } catch (const std::exception&) {
     }
-    refuse(file, "something else", "facts of a picture's slabs");
+    refuse(file, "something else", kFactsOfSlabs);
 }
 
 // Parts belong together that are made alike, of one file: names the option that differs first.
@@ -145,7 +144,7 @@ void requireFactsOf(const Json& json, const std::filesystem::path& input, const 
         known = json.at("options").get<Notes>();
         mark = wholeNumberOf<std::uint64_t>(json.at("input"));
     } catch (const std::exception&) {
-        refuse(file, "something else", "facts of a picture's slabs");
+        refuse(file, "something else", kFactsOfSlabs);
     }
     const auto text = [](const std::string& name, const std::string& value) {
         return name + (value.empty() ? "" : " ") + value;
@@ -222,7 +221,7 @@ std::optional<Volume> readSlabVolume(const std::filesystem::path& input, const R
         grid = json.at("grid");
         wanted = wantedOf(json, share, facts);
     } catch (const std::exception&) {
-        refuse(facts, "something else", "facts of a picture's slabs");
+        refuse(facts, "something else", kFactsOfSlabs);
     }
     if (lowerCase(input.extension().string()) != ".vdb") return std::nullopt;
     if (inputsAreConfined()) requireConfined(input);

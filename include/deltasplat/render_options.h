@@ -72,8 +72,8 @@ struct Drr {
 };
 
 /// What can be asked for. Under all modes but kComposite method, tolerance, resolution, filter,
-/// extinction, unit distance and colorBy have no effect, and sigma only under kXray and kDrr in
-/// parallel projection; the transfer function has none but for the colours of `mipColors`.
+/// sigma, extinction, unit distance and colorBy have no effect; the transfer function has none but
+/// for the colours of `mipColors`.
 struct RenderOptions : SplatOptions {
     Mode mode = Mode::kComposite;
     /// kMip, kMin, kAverage: the transfer function's colour of the value, opaque, instead of the

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <vector>
 
+#include "box_voxels.h"
 #include "convert/dense_type.h"
 #include "convert/dense_values.h"
 #include "convert/packed_output.h"
@@ -53,22 +54,36 @@ void requireVoxels(const std::filesystem::path& file, const Volume& volume, cons
                             "a volume with a bounding box (.vdb holds empty ones)"));
 }
 
+// Returns the file's name, and of a box that is nearly empty what it would take.
+std::string whatIsWritten(const std::filesystem::path& file, const Volume& volume,
+                          const IndexBox& box, double bytes) {
+    constexpr double kNearlyEmpty = 1000;
+    if (double(voxelsOf(box)) <
+        kNearlyEmpty * double(std::max<std::uint64_t>(volume.activeCount, 1)))
+        return file.string();
+    const glm::ivec3 dims = box.dims();
+    return file.string() + ": " + std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" +
+           std::to_string(dims.z) + " voxels, " + humanBytes(bytes) + ", of which " +
+           std::to_string(volume.activeCount) + " are active (a .vdb stores those alone)";
+}
+
 // Space on the disk is asked for before hours of work, as far as it can be known.
-void requireSpace(const std::filesystem::path& file, const DenseFormat& format, double bytes) {
+void requireSpace(const std::filesystem::path& file, const std::string& what,
+                  const DenseFormat& format, double bytes) {
     constexpr double kMostPacking = 1032;  // zlib's best
     const double least = format.gzipData ? bytes / kMostPacking : bytes;
     std::error_code error;
     const std::filesystem::path folder = absolute(file, error).parent_path();
     const std::filesystem::space_info space = std::filesystem::space(folder, error);
     if (error || least <= double(space.available)) return;
-    throw Error(ErrorCode::kOutput, file.string() + ": cannot be written: needs " +
-                                        humanBytes(least) + "; expected at most " +
+    throw Error(ErrorCode::kOutput, what + ": cannot be written: needs " + humanBytes(least) +
+                                        "; expected at most " +
                                         humanBytes(double(space.available)) + ", which is free");
 }
 
 void noteLostStates(const Volume& volume, const IndexBox& box, Notes& notes) {
     if (!volume.hasBackground) return;
-    const std::uint64_t inactive = std::uint64_t(box.voxels()) - volume.activeCount;
+    const std::uint64_t inactive = voxelsOf(box) - volume.activeCount;
     if (inactive != 0) {
         notes.loss(std::to_string(inactive) +
                    " inactive voxels become voxels like the others, with the value they hold "
@@ -180,8 +195,9 @@ WriteReport writeDense(const std::filesystem::path& file, const DenseFormat& for
     format.settle(layout, file.string(), notes);
     noteLostStates(volume, box, notes);
     const double sliceBytes = double(layout.dims.x) * layout.dims.y * rawTypeBytes(layout.type);
-    requireMemory(file.string(), 2 * kBlock * sliceBytes);
-    requireSpace(file, format, sliceBytes * layout.dims.z);
+    const std::string what = whatIsWritten(file, volume, box, sliceBytes * layout.dims.z);
+    requireMemory(what, 2 * kBlock * sliceBytes);
+    requireSpace(file, what, format, sliceBytes * layout.dims.z);
 
     const std::filesystem::path dataFile = dataFileOf(file);
     PackedOutput head(file);

@@ -29,10 +29,16 @@ namespace deltasplat {
 namespace {
 
 // Adds blocks in which nothing is seen but what the painter adds, in the order in which they are.
-void addBlocks(const BlockSet& more, int sliceAxis, std::vector<CodeBlock>& blocks) {
+// @param box  of the volume, which may be a group of what the painter knows
+void addBlocks(const BlockSet& more, const IndexBox& box, int sliceAxis,
+               std::vector<CodeBlock>& blocks) {
+    const auto isInBox = [&](const glm::ivec3& position) {
+        const glm::ivec3 first = 8 * position;
+        return first == glm::clamp(first, box.min - 7, box.max);
+    };
     std::vector<CodeBlock> added;
     for (const glm::ivec3& position : more.positions)
-        added.push_back({toSliceOrder(position, sliceAxis)});
+        if (isInBox(position)) added.push_back({toSliceOrder(position, sliceAxis)});
     std::sort(added.begin(), added.end(), comesBefore);
     std::vector<CodeBlock> all;
     std::set_union(blocks.begin(), blocks.end(), added.begin(), added.end(),
@@ -183,7 +189,7 @@ struct DeltaPacker::Impl {
         blocks = sight ? sight->listBlocks(*volume.codes, options.sliceAxis, volume.histogram)
                        : listBlocks(*volume.codes, options.sliceAxis, slotMap, seen);
         if (options.painter && options.painter->more())
-            addBlocks(*options.painter->more(), options.sliceAxis, blocks);
+            addBlocks(*options.painter->more(), volume.box, options.sliceAxis, blocks);
         if (seen && (sight || options.painter)) {
             std::erase_if(blocks,
                           [&](const CodeBlock& block) { return !seen->sees(block.position); });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/delta/stamp_counts.h"
 
+#include "box_voxels.h"
 #include "delta/block_windows.h"
 #include "delta/slab_plan.h"
 
@@ -9,7 +10,7 @@ namespace deltasplat {
 StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap) {
     StampCounts stamps;
     if (volume.empty()) return stamps;
-    stamps.traditional = std::uint64_t(volume.box.voxels());
+    stamps.traditional = voxelsOf(volume.box);
     const IndexBox box = permutedBox(volume.box, sliceAxis);
     const SlabLayout layout = oneSlab(box);
     const BlockReader reader(*volume.codes, nullptr, sliceAxis, slotMap);

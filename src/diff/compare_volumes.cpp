@@ -7,7 +7,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
+#include <glm/vector_relational.hpp>
 #include <limits>
+#include <vector>
 
 #include "default_floats.h"
 #include "diff/compare_trees.h"
@@ -43,48 +45,96 @@ IndexBox movedBox(const IndexBox& box, const glm::ivec3& offset) {
     return box.empty() ? box : IndexBox{box.min + offset, box.max + offset};
 }
 
-// Returns how far apart the places of B's voxels are from those of A's that lie `offset` further
-// on. The map between both places is affine, so the corners move farthest.
-double shiftOf(const Volume& a, const Volume& b, const glm::ivec3& offset) {
-    const glm::dmat4 placeA = glm::translate(a.worldFromIndex, glm::dvec3(offset));
+// How far apart the places of B's voxels are from those of A's that lie `offset` further on.
+struct Places {
+    glm::ivec3 offset{0};
+    double shift = 0;     // as VolumeComparison
+    bool asHeld = false;  // no farther than numbers of the coarser format tell places apart
+};
+
+// How far a voxel's place may be from the one meant, where each number of its transform is within
+// half a unit of its last digit.
+glm::dvec3 roundingAt(const glm::dmat4& worldFromIndex, int digits, const glm::dvec4& index) {
+    constexpr int kLeastExponent = std::numeric_limits<float>::min_exponent - 1;
+    glm::dvec3 rounding(0);
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 3; ++row) {
+            const int exponent = std::max(std::ilogb(worldFromIndex[column][row]), kLeastExponent);
+            rounding[row] += std::ldexp(std::abs(index[column]), exponent - digits);
+        }
+    }
+    return rounding;
+}
+
+// The map between both places is affine, so the corners move farthest.
+// @param digits  of the numbers of each
+Places placesAt(const Volume& a, const Volume& b, const glm::ivec3& offset, glm::ivec2 digits) {
     const glm::dmat4 placeB = inSpaceOf(a, b);
-    if (placeA == placeB) return 0;
-    const glm::dmat4 moved = placeB - placeA;
+    const glm::dmat4 moved = placeB - glm::translate(a.worldFromIndex, glm::dvec3(offset));
     IndexBox box = boxOfBoth(movedBox(a.box, -offset), b.box);
     // Without any voxels, a transform is where its first ones would be.
     if (box.empty()) box = {glm::ivec3(0), glm::ivec3(1)};
     double farthest = 0;
+    bool asHeld = true;
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec4 index(cornerOf(box, corner), 1);
-        farthest = std::max(farthest, glm::length(glm::dvec3(moved * index)));
+        const glm::dvec4 indexB(cornerOf(box, corner), 1);
+        const glm::dvec4 indexA = indexB + glm::dvec4(offset, 0);
+        const glm::dvec3 way(moved * indexB);
+        farthest = std::max(farthest, glm::length(way));
+        // What is computed of these numbers, here and by who wrote them, is rounded a few times.
+        constexpr int kComputed = std::numeric_limits<double>::digits - 3;
+        const glm::dvec3 held =
+            glm::max(roundingAt(a.worldFromIndex, digits.x, indexA),
+                     roundingAt(placeB, digits.y, indexB)) +
+            roundingAt(a.worldFromIndex, kComputed, glm::abs(indexA) + glm::abs(indexB));
+        asHeld = asHeld && glm::all(glm::lessThanEqual(glm::abs(way), held));
     }
     const double voxel = std::min(smallestSize(a), unitFactor(a, b) * smallestSize(b));
-    return std::min(farthest / voxel, std::numeric_limits<double>::max());
+    return {offset, std::min(farthest / voxel, std::numeric_limits<double>::max()), asHeld};
 }
 
-// Returns the whole number of voxels that is nearest to the way from A's voxel (0,0,0) to B's; 0 if
-// indices do not reach so far.
-glm::ivec3 nearestOffset(const Volume& a, const Volume& b) {
+// The ways between indices of equal places that come into question: none, the whole number of
+// voxels nearest to the way in the world from A's voxel (0,0,0) to B's, and the way between the
+// first voxels of boxes of one size, which is right however coarse the numbers of a transform are.
+std::vector<glm::ivec3> offsetsOf(const Volume& a, const Volume& b) {
+    std::vector<glm::ivec3> offsets{glm::ivec3(0)};
+    const auto add = [&](const glm::dvec3& offset) {
+        constexpr double kMost = 0x1p29;
+        if (std::max({std::abs(offset.x), std::abs(offset.y), std::abs(offset.z)}) <= kMost)
+            offsets.emplace_back(offset);
+    };
     const glm::dvec3 way(inSpaceOf(a, b)[3] - a.worldFromIndex[3]);
-    const glm::dvec3 voxels = glm::round(glm::inverse(glm::dmat3(a.worldFromIndex)) * way);
-    constexpr double kMost = 0x1p29;
-    const bool inReach =
-        std::max({std::abs(voxels.x), std::abs(voxels.y), std::abs(voxels.z)}) <= kMost;
-    return inReach ? glm::ivec3(voxels) : glm::ivec3(0);
+    add(glm::round(glm::inverse(glm::dmat3(a.worldFromIndex)) * way));
+    if (!a.box.empty() && a.box.dims() == b.box.dims())
+        add(glm::dvec3(a.box.min) - glm::dvec3(b.box.min));
+    return offsets;
+}
+
+// The first way by which places are equal; else the one by which voxels stay within half of one of
+// each other; else none.
+Places choosePlaces(const Volume& a, const Volume& b, const CompareOptions& options) {
+    std::vector<Places> places;
+    const glm::ivec2 digits(options.placeDigitsA, options.placeDigitsB);
+    for (const glm::ivec3& offset : offsetsOf(a, b))
+        places.push_back(placesAt(a, b, offset, digits));
+    const auto isEqual = [&](const Places& one) { return one.shift <= options.shift; };
+    const auto equal = std::find_if(places.begin(), places.end(), isEqual);
+    if (equal != places.end()) return *equal;
+    const auto held =
+        std::find_if(places.rbegin(), places.rend(), [](const Places& one) { return one.asHeld; });
+    if (held != places.rend()) return *held;
+    const auto least = std::min_element(
+        places.begin(), places.end(),
+        [](const Places& one, const Places& other) { return one.shift < other.shift; });
+    return least->shift < 0.5 ? *least : places.front();
 }
 
 void takePlaces(const Volume& a, const Volume& b, const CompareOptions& options,
                 VolumeComparison& result) {
-    result.shift = shiftOf(a, b, glm::ivec3(0));
-    if (result.shift > options.shift) {
-        const glm::ivec3 offset = nearestOffset(a, b);
-        const double rest = shiftOf(a, b, offset);
-        if (rest <= options.shift) {
-            result.offset = offset;
-            result.shift = rest;
-        }
-    }
-    result.transformEqual = result.shift <= options.shift;
+    const Places places = choosePlaces(a, b, options);
+    result.offset = places.offset;
+    result.shift = places.shift;
+    result.transformEqual = places.asHeld || places.shift <= options.shift;
     result.sizeEqual =
         a.hasBackground || b.hasBackground || a.box == movedBox(b.box, result.offset);
 }

@@ -14,6 +14,7 @@
 #include "deltasplat/error.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/codes/code_values.h"
+#include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/source_grid.h"
 #include "ingest/grids/tree_types.h"
@@ -40,10 +41,16 @@ WideValue split(std::int64_t value) {
     return {double(high) * kWideStep, double(value % kStep)};
 }
 
+WideValue split(std::uint64_t value) {
+    constexpr std::uint64_t kStep = std::uint64_t{1} << 32;
+    return {double(value / kStep) * kWideStep, double(value % kStep)};
+}
+
 // Turns what a tree stores into values.
 struct Decoder {
     std::shared_ptr<const std::vector<double>> table;  // [65536] what codes stand for; or null
     bool wide = false;
+    bool isUnsigned = false;  // int64 has the bits of uint64
 
     template <typename T>
     WideValue operator()(T stored) const {
@@ -51,7 +58,7 @@ struct Decoder {
             const double value = (*table)[stored];
             return wide ? split(value) : WideValue{value, 0};
         } else if constexpr (std::is_same_v<T, std::int64_t>) {
-            return split(stored);
+            return isUnsigned ? split(std::uint64_t(stored)) : split(stored);
         } else {
             return wide ? split(double(stored)) : WideValue{double(stored), 0};
         }
@@ -274,7 +281,8 @@ VoxelSource::VoxelSource(const Volume& volume, bool wide, WideValue background, 
         };
         std::visit(read, packed->nodes);
     } else if (volume.source) {
-        withSource(volume, [&](const auto& tree) { readTree(tree, {nullptr, wide}); });
+        const bool isUnsigned = volume.source->grid.metadata.text(kSourceTypeKey) == "uint64";
+        withSource(volume, [&](const auto& tree) { readTree(tree, {nullptr, wide, isUnsigned}); });
     } else {
         readTree(
             volume.codes->tree(),

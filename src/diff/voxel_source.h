@@ -28,7 +28,7 @@ struct WideValue {
     std::string text() const {
         const double size = std::fabs(rounded());
         const bool isWhole = low == std::trunc(low) && high == std::trunc(high);
-        if (!isWhole || size < 0x1p53 || size >= 0x1p64) return numberText(rounded());
+        if (!isWhole || size < 0x1p53 || std::fabs(high) >= 0x1p64) return numberText(rounded());
         const auto digits = std::uint64_t(std::fabs(high)) + std::uint64_t(std::fabs(low));
         return (rounded() < 0 ? "-" : "") + std::to_string(digits);
     }

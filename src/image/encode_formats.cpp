@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "image/encode_image.h"
+#include "image/encode_numbers.h"
 #include "image/quantize.h"
 #include "modules/image_module.h"
 
@@ -87,6 +88,20 @@ std::string encodeTiff(const std::filesystem::path& file, const Image& image,
     return encodeStraight(file, "tiff", image, spec, options);
 }
 
+std::string encodeNumberTiff(const std::filesystem::path& file, const Image& image,
+                             const ImageFileOptions& options) {
+    const glm::ivec2 size = regionOf(options, image.size).size();
+    OIIO::ImageSpec spec(size.x, size.y, 1, OIIO::TypeFloat);
+    spec.channelnames = {"Y"};
+    spec.attribute("compression", "zip");
+    addDescription(description(options), spec);
+    spec.attribute("DateTime", "");  // as in encodeTiff
+    const std::vector<float> numbers = numbersOf(image, options);
+    return encodeInMemory(file, "tiff", spec, [&](OIIO::ImageOutput& output) {
+        return output.write_image(OIIO::TypeFloat, numbers.data());
+    });
+}
+
 std::string encodeJpeg(const std::filesystem::path& file, const Image& image,
                        const ImageFileOptions& options) {
     const PixelBox part = regionOf(options, image.size);
@@ -102,8 +117,9 @@ std::string encodeJpeg(const std::filesystem::path& file, const Image& image,
 
 std::string image_module::encodeImage(const std::filesystem::path& file, const Image& image,
                                       const ImageFileOptions& options) {
-    return imageFormatOf(file) == ImageFormat::kTiff ? encodeTiff(file, image, options)
-                                                     : encodeJpeg(file, image, options);
+    if (imageFormatOf(file) == ImageFormat::kJpeg) return encodeJpeg(file, image, options);
+    return options.numbers ? encodeNumberTiff(file, image, options)
+                           : encodeTiff(file, image, options);
 }
 
 }  // namespace deltasplat

@@ -8,6 +8,7 @@
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "dims_text.h"
+#include "image/encode_numbers.h"
 #include "image/encode_png.h"
 #include "image/quantize.h"
 #include "lower_case.h"
@@ -18,7 +19,7 @@ namespace deltasplat {
 namespace {
 
 int maxSide(ImageFormat format) {
-    if (format == ImageFormat::kExr) return std::numeric_limits<int>::max();
+    if (format == ImageFormat::kExr || isOfNumbers(format)) return std::numeric_limits<int>::max();
     return format == ImageFormat::kJpeg ? kMaxJpegSide : kMaxPngSide;
 }
 
@@ -55,7 +56,13 @@ void checkOptions(const std::filesystem::path& file, glm::ivec2 size,
                                 std::to_string(pixels) + ", one for each pixel"));
     }
     checkRegion(options, size);
-    if (options.floatExr && format != ImageFormat::kExr) {
+    if (isOfNumbers(format) && !options.numbers) {
+        throw Error(ErrorCode::kUsage, gotExpected(file.string(), "a picture of colours",
+                                                   "one of numbers, or .exr, .png, .tif or .jpg"));
+    }
+    const bool holdsNumbers =
+        options.numbers && (isOfNumbers(format) || format == ImageFormat::kTiff);
+    if (options.floatExr && format != ImageFormat::kExr && !holdsNumbers) {
         throw Error(ErrorCode::kUsage, gotExpected("`floatExr`", file.string(), "an .exr file"));
     }
     if (format == ImageFormat::kExr) checkExrOptions(options.exr, false);
@@ -92,9 +99,17 @@ ImageFormat imageFormatOf(const std::filesystem::path& file) {
     if (extension == ".png") return ImageFormat::kPng;
     if (extension == ".tif" || extension == ".tiff") return ImageFormat::kTiff;
     if (extension == ".jpg" || extension == ".jpeg") return ImageFormat::kJpeg;
+    if (extension == ".npy") return ImageFormat::kNpy;
+    if (extension == ".nrrd") return ImageFormat::kNrrd;
+    if (extension == ".mha") return ImageFormat::kMetaImage;
     throw Error(ErrorCode::kUsage,
                 gotExpected(file.string(), "extension \"" + file.extension().string() + "\"",
-                            ".exr, .png, .tif or .jpg"));
+                            ".exr, .png, .tif or .jpg (numbers: .npy, .nrrd or .mha)"));
+}
+
+bool isOfNumbers(ImageFormat format) {
+    return format == ImageFormat::kNpy || format == ImageFormat::kNrrd ||
+           format == ImageFormat::kMetaImage;
 }
 
 void checkImageFile(const std::filesystem::path& file, glm::ivec2 sizePixels,
@@ -113,6 +128,7 @@ std::string encodeImage(const std::filesystem::path& file, const Image& image,
     }
     const ImageFormat format = imageFormatOf(file);
     if (format == ImageFormat::kExr) return exrModule().encodeExr(file, image, options);
+    if (isOfNumbers(format)) return encodeNumbers(file, image, options);
     // The one format that nothing is loaded for, and that is packed by all threads.
     if (format == ImageFormat::kPng) {
         return options.bits == 16 ? encodePng<std::uint16_t>(image, options)

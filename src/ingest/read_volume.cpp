@@ -10,11 +10,14 @@
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/value_statistics.h"
+#include "ingest/dense/dense_unsigned.h"
 #include "ingest/dense/open_dense.h"
 #include "ingest/dicom/dicom_series.h"
 #include "ingest/files/input_files.h"
 #include "ingest/files/input_kind.h"
+#include "ingest/nifti/nifti_header.h"
 #include "ingest/raw/read_npy.h"
+#include "ingest/read_compared.h"
 #include "ingest/readers.h"
 #include "number_text.h"
 
@@ -44,7 +47,8 @@ DenseSource openDense(const std::filesystem::path& input, const InputKind& kind,
 namespace {
 
 void read(const std::filesystem::path& file, const ReadOptions& options, bool all,
-          const VolumeVisitor& visitor, const Listener& listener) {
+          const VolumeVisitor& visitor, const Listener& listener,
+          decltype(&readDense) readValues = &readDense) {
     const DefaultFloats floats;
     requireFiniteNan(options);
     const InputKind kind = findInput(file, listener);
@@ -52,18 +56,19 @@ void read(const std::filesystem::path& file, const ReadOptions& options, bool al
     if (kind.format == InputKind::Format::kVdb) {
         readVdb(file, options, all, visitor, listener);
     } else {
-        Volume volume = readDense(openDense(file, kind, options, listener), options, listener);
+        Volume volume = readValues(openDense(file, kind, options, listener), options, listener);
         if (visitor.volume) visitor.volume(std::move(volume));
     }
     listener.report(1);
 }
 
 std::vector<Volume> collect(const std::filesystem::path& file, const ReadOptions& options, bool all,
-                            const Listener& listener) {
+                            const Listener& listener,
+                            decltype(&readDense) readValues = &readDense) {
     std::vector<Volume> volumes;
     VolumeVisitor visitor;
     visitor.volume = [&](Volume volume) { volumes.push_back(std::move(volume)); };
-    read(file, options, all, visitor, listener);
+    read(file, options, all, visitor, listener, readValues);
     return volumes;
 }
 
@@ -72,6 +77,17 @@ std::vector<Volume> collect(const std::filesystem::path& file, const ReadOptions
 Volume readVolume(const std::filesystem::path& file, const ReadOptions& options,
                   const Listener& listener) {
     return std::move(collect(file, options, false, listener).front());
+}
+
+Volume readCompared(const std::filesystem::path& file, const ReadOptions& options,
+                    const Listener& listener) {
+    return std::move(collect(file, options, false, listener, &readDenseUnsigned).front());
+}
+
+int placeDigitsOf(const std::filesystem::path& file) {
+    if (findInput(file, {}).format != InputKind::Format::kNifti)
+        return std::numeric_limits<double>::digits;
+    return readNiftiHeader(file, {}).placeDigits;
 }
 
 std::vector<Volume> readAllVolumes(const std::filesystem::path& file, const ReadOptions& options,

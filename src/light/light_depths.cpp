@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <optional>
+#include <utility>
 #include <variant>
 
 #include "deltasplat/threads.h"
@@ -49,6 +51,7 @@ class Sweeps {
     const std::vector<float>& extinctions_;
     float most_;
     std::array<std::optional<LitBlocks::Along>, 3> along_;
+    std::deque<LitBlocks::Along> apart_;  // of what lies far apart
     std::vector<Sweep> sweeps_;
     std::vector<std::size_t> lights_;  // of sweeps
     std::size_t lightCount_ = 0;
@@ -65,9 +68,19 @@ void Sweeps::add(const Light& light, const glm::dvec3& placeIndex) {
         addPoint(placeIndex);
     } else {
         const LightWay way(volume_.worldFromIndex, light.direction);
-        sweeps_.emplace_back(
-            LightSweep(along(way.sliceAxis), way, volume_.box.min[way.sliceAxis],
-                       MetClasses{extinctions_.data(), float(way.sliceWorld), most_}));
+        const auto sweepOf = [&](const LitBlocks::Along& blocks) {
+            return LightSweep(blocks, way, volume_.box.min[way.sliceAxis],
+                              MetClasses{extinctions_.data(), float(way.sliceWorld), most_});
+        };
+        const LightSweep all = sweepOf(along(way.sliceAxis));
+        // As a plane of as many floats takes.
+        constexpr double kLargePlane = 1 << 26;
+        if (all.bytes(0, all.rows()) <= kLargePlane) {
+            sweeps_.emplace_back(all);
+        } else {
+            for (LitBlocks::Along& part : all.apart())
+                sweeps_.emplace_back(sweepOf(apart_.emplace_back(std::move(part))));
+        }
     }
     lights_.resize(sweeps_.size(), lightCount_++);
 }

@@ -5,6 +5,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <vector>
 
 #include "light/lit_blocks.h"
 #include "light/sweep_kernels.h"
@@ -20,6 +21,15 @@ struct LightWay {
     bool forward;       ///< it travels towards larger slices
     glm::dvec2 shift;   ///< (u, v) by which it moves from a slice to the next larger one
     double sliceWorld;  ///< world units that it travels in a slice
+};
+
+/// What a block reads from or adds to of the plane that light is swept through: rows and columns,
+/// both ends inclusive.
+struct PlaneReach {
+    int slice;  ///< its first
+    LitBlocks::Along::Place place;
+    glm::i64vec2 least;
+    glm::i64vec2 most;
 };
 
 /// What light comes through on its way to each voxel of a volume, slice by slice from where it
@@ -41,6 +51,10 @@ class LightSweep {
     double bytes(std::int64_t first, std::int64_t last) const {
         return double(sizeof(float)) * (double(last) - first + 1) * columns_;
     }
+    /// Returns the blocks in parts that no light goes through from one to another, where these can
+    /// be swept on much smaller planes: then each is to have a sweep of its own, from the same
+    /// origin on, which changes nothing.
+    std::vector<LitBlocks::Along> apart() const;
     /// Sweeps a strip. Voxels that it does not reach are left to others.
     /// @param first,last  rows [first, last) of [0, rows())
     /// @param depths      of blocks, `[x][y][z]` each: square roots of extinction, in 1 /
@@ -51,6 +65,7 @@ class LightSweep {
     struct Strip;
 
     glm::dvec2 placeOf(int slice) const { return -(double(slice) - origin_) * way_.shift; }
+    std::vector<PlaneReach> reaches() const;
     void findRows();
     void sweepSlice(const LitBlocks::Along::Group& group, int slice, Strip& strip) const;
 

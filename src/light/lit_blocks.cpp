@@ -39,30 +39,35 @@ std::int64_t LitBlocks::find(const glm::ivec3& position) const {
 LitBlocks::Along LitBlocks::along(int sliceAxis) const {
     const double bytes = 512 * sizeof(std::uint16_t) + sizeof(Along::Place);
     requireMemory("blocks as light comes upon them", bytes * double(size()));
-    Along along{sliceAxis, {}, {}, {}, {}, {}};
+    Along along;
+    along.sliceAxis = sliceAxis;
+    std::vector<Along::Place> places;
     const auto placeOf = [&](std::size_t number) {
         const glm::ivec3 place = 8 * toSliceOrder(blocks_[number].position, sliceAxis);
         return std::array{place.x, place.y, place.z};
     };
     for (std::size_t number = 0; number < size(); ++number) {
-        const glm::ivec2 first(placeOf(number)[1], placeOf(number)[2]);
-        along.low = number == 0 ? first : glm::min(along.low, first);
-        along.high = number == 0 ? first : glm::max(along.high, first);
-        along.order.push_back({number, first});
+        places.push_back({number, {placeOf(number)[1], placeOf(number)[2]}});
     }
-    std::sort(along.order.begin(), along.order.end(),
-              [&](const Along::Place& a, const Along::Place& b) {
-                  return placeOf(a.number) < placeOf(b.number);
-              });
-    for (std::size_t i = 0; i < size(); ++i) {
-        const int slice = placeOf(along.order[i].number)[0];
-        if (along.groups.empty() || along.groups.back().firstSlice != slice)
-            along.groups.push_back({slice, i, i});
-        along.groups.back().end = i + 1;
-    }
-    along.classes = UnclearedArray<std::uint16_t>(512 * size(), *std::pmr::get_default_resource());
-    if (size() != 0) readClasses(sliceAxis, &along.classes[0]);
+    std::sort(places.begin(), places.end(), [&](const Along::Place& a, const Along::Place& b) {
+        return placeOf(a.number) < placeOf(b.number);
+    });
+    for (const Along::Place& place : places) along.add(placeOf(place.number)[0], place);
+    auto classes = std::make_shared<UnclearedArray<std::uint16_t>>(
+        512 * size(), *std::pmr::get_default_resource());
+    if (size() != 0) readClasses(sliceAxis, &(*classes)[0]);
+    along.classes = std::move(classes);
     return along;
+}
+
+void LitBlocks::Along::add(int firstSlice, const Place& place) {
+    const std::size_t number = order.size();
+    low = number == 0 ? place.first : glm::min(low, place.first);
+    high = number == 0 ? place.first : glm::max(high, place.first);
+    order.push_back(place);
+    if (groups.empty() || groups.back().firstSlice != firstSlice)
+        groups.push_back({firstSlice, number, number});
+    groups.back().end = number + 1;
 }
 
 void LitBlocks::readClasses(int sliceAxis, std::uint16_t* classes) const {

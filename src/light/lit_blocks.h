@@ -5,6 +5,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -49,11 +50,15 @@ class LitBlocks {
             glm::ivec2 first;  ///< (u, v) of its first voxel
         };
         int sliceAxis;
-        std::vector<Place> order;               ///< by slice, u and v
-        std::vector<Group> groups;              ///< by slice
-        glm::ivec2 low;                         ///< (u, v): the smallest of any block's first voxel
-        glm::ivec2 high;                        ///< and the largest
-        UnclearedArray<std::uint16_t> classes;  ///< `[block][slice][u][v]`
+        std::vector<Place> order;   ///< by slice, u and v
+        std::vector<Group> groups;  ///< by slice
+        glm::ivec2 low{0};          ///< (u, v): the smallest of any block's first voxel
+        glm::ivec2 high{0};         ///< and the largest
+        /// `[block][slice][u][v]`; of all blocks, whichever these are.
+        std::shared_ptr<const UnclearedArray<std::uint16_t>> classes;
+
+        /// Adds a block, whose slice is none before those that there are.
+        void add(int firstSlice, const Place& place);
     };
     /// Multi-threaded.
     /// @throw Error(kFailed) if there is not enough memory

@@ -25,7 +25,8 @@ struct PointPlace {
 /// does, on a plane that grows with the distance: a node of it stands for a way from the light, and
 /// adds up what this way meets. From slices to those twice as far the nodes are doubled both ways,
 /// so that voxels never lie closer than they do. What is between two nodes is so far mixed of them
-/// anyway, so that this blurs nothing.
+/// anyway, so that this blurs nothing. Where planes would get large, what no voxel behind reads is
+/// left out, and what lies far apart is swept by itself from there on.
 class PointSweep {
   public:
     /// @param blocks   along the slice axis; must outlive this
@@ -51,7 +52,15 @@ class PointSweep {
     double distanceOf(int slice) const;
     void findGroups();
     void findRows();
-    void sweepSlice(const LitBlocks::Along::Group& group, int slice, Strip& strip) const;
+    // Blocks from the light on.
+    struct Blocks {
+        std::vector<LitBlocks::Along::Group> groups;  // of places
+        std::vector<LitBlocks::Along::Place> places;
+    };
+    void sweepBlocks(const Blocks& blocks, Strip& strip) const;
+    bool sweepApart(const Blocks& blocks, std::size_t group, Strip& strip) const;
+    void sweepSlice(const Blocks& blocks, const LitBlocks::Along::Group& group, int slice,
+                    Strip& strip) const;
     void read(const LitBlocks::Along::Place& block, double distance, const Strip& strip,
               std::uint16_t* out) const;
 
@@ -59,8 +68,7 @@ class PointSweep {
     PointPlace light_;
     bool forward_;
     MetClasses met_;
-    std::vector<LitBlocks::Along::Group> groups_;  // of places_, from the light on
-    std::vector<LitBlocks::Along::Place> places_;
+    Blocks ahead_;
     // Nodes where slices begin: rows and columns from the light's own, `nodes_` for a slope of 1.
     double nodes_ = 1;
     std::int64_t firstRow_ = 0;

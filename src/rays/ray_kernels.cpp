@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The inner loops of line integrals and maxima, compiled once for each SIMD level.
-// Based on: W. Kahan, "Further remarks on reducing truncation errors", 1965 (sums of many slices).
+// Based on: W. Kahan, "Further remarks on reducing truncation errors", 1965 (sums of many slices);
+// the integrals of trilinear interpolation are our own (docs/method.md).
 #include "rays/ray_kernels.h"
+
+#include <limits>
 
 #include "simd_targets.h"
 
@@ -15,7 +18,6 @@ HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using FullTag = hn::ScalableTag<float>;
 using EightTag = hn::CappedTag<float, 8>;
 using CodeTag = hn::FixedTag<Code, 8>;
 
@@ -94,192 +96,408 @@ void readBlockValuesKernel(const Code* codes, int sliceAxis, const CodeValues& v
                   : storeValues<false>(from, values, place);
 }
 
-// Calls use(tag, i) for whole vectors of a multiple of eight values, then for what is left.
-template <typename Use>
-HWY_INLINE void forVectors(std::size_t count, const Use& use) {
-    const FullTag full;
-    const EightTag eight;
-    std::size_t i = 0;
-    for (; i + hn::Lanes(full) <= count; i += hn::Lanes(full)) use(full, i);
-    for (; i < count; i += hn::Lanes(eight)) use(eight, i);
-}
+using IntTag = hn::RebindToSigned<EightTag>;
 
+// Four rows of four values that lie beside each other, for as many rays as a vector has lanes: the
+// first value of each ray, the second, the third, the last.
 template <class V>
-HWY_INLINE V between(V a, V b, V share) {
-    return hn::Add(a, hn::Mul(share, hn::Sub(b, a)));
-}
-
-// Reads along the rows first, then along the columns.
-template <bool kStraight, class Tag>
-HWY_INLINE auto readSlice(Tag tag, const RaySpan& span, std::size_t i, glm::vec2 fraction) {
-    if constexpr (kStraight) {
-        return hn::LoadU(tag, span.row + i);
-    } else {
-        const auto down = hn::Set(tag, fraction.y);
-        const auto here =
-            between(hn::LoadU(tag, span.row + i), hn::LoadU(tag, span.nextRow + i), down);
-        const auto next =
-            between(hn::LoadU(tag, span.row + i + 1), hn::LoadU(tag, span.nextRow + i + 1), down);
-        return between(here, next, hn::Set(tag, fraction.x));
-    }
-}
-
-// Values of a vector that may be missing (NaN), and how much each weighs.
-template <class V>
-struct Weighed {
-    V value, weight;
+struct Fours {
+    V at[4];
 };
 
-// The mean of two, by their weights; where only one counts, that one. Where both have the weights
-// that the share gives them, it is `between`.
-template <class Tag, class V>
-HWY_INLINE Weighed<V> meanOf(Tag tag, const Weighed<V>& a, const Weighed<V>& b, V share) {
+// Loads a ray's four values, and those of the ray four further.
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> loadRay(Tag tag, const float* values, const std::int32_t* offsets) {
+    const hn::CappedTag<float, 4> quarter;
+    const auto low = hn::LoadU(quarter, values + offsets[0]);
+    if constexpr (hn::MaxLanes(Tag()) == 8) {
+        return hn::Combine(tag, hn::LoadU(quarter, values + offsets[4]), low);
+    } else {
+        return low;
+    }
+}
+
+// Loads four values for each ray, as rows of a matrix that is turned.
+HWY_INLINE Fours<hn::Vec<EightTag>> loadFours(const float* values, const std::int32_t* offsets) {
+    const EightTag tag;
+    const auto load = [&](int ray) { return loadRay(tag, values, offsets + ray); };
+    const hn::RepartitionToWide<EightTag> pairs;
+    const auto a = load(0), b = load(1), c = load(2), d = load(3);
+    const auto abLow = hn::BitCast(pairs, hn::InterleaveLower(tag, a, b));
+    const auto abHigh = hn::BitCast(pairs, hn::InterleaveUpper(tag, a, b));
+    const auto cdLow = hn::BitCast(pairs, hn::InterleaveLower(tag, c, d));
+    const auto cdHigh = hn::BitCast(pairs, hn::InterleaveUpper(tag, c, d));
+    return {{hn::BitCast(tag, hn::InterleaveLower(pairs, abLow, cdLow)),
+             hn::BitCast(tag, hn::InterleaveUpper(pairs, abLow, cdLow)),
+             hn::BitCast(tag, hn::InterleaveLower(pairs, abHigh, cdHigh)),
+             hn::BitCast(tag, hn::InterleaveUpper(pairs, abHigh, cdHigh))}};
+}
+
+// Where rays are between two voxels along an axis, and how far they go for each slice.
+template <class V>
+struct Along {
+    V first;    // 0 <= first < 1: behind the voxel that is read first
+    V slope;    // 0 <= slope <= 1
+    V inverse;  // 1 / slope, or 0
+};
+
+// Of a ray that goes from one slice before a slice to one behind it: integrals over the tent of the
+// slice times (r - p) from p on, where the ray, of which r = 0 to 2 is the way, crosses a voxel's
+// plane; times r - p and what is left of the way; and what is left at all.
+template <class V>
+struct Crossing {
+    V left;
+    V plain;
+    V weighed;
+};
+
+template <class V>
+HWY_INLINE Crossing<V> crossingAt(V left) {
+    const EightTag tag;
+    const auto two = hn::Set(tag, 2.0f);
+    const auto third = hn::Set(tag, 1.0f / 3);
+    const auto z = hn::Min(hn::Max(left, hn::Zero(tag)), two);
+    const auto h = hn::Max(hn::Sub(z, hn::Set(tag, 1.0f)), hn::Zero(tag));
+    const auto z3 = hn::Mul(hn::Mul(z, z), z);
+    const auto h3 = hn::Mul(hn::Mul(h, h), h);
+    const auto plain = hn::Sub(hn::Mul(z3, hn::Set(tag, 1.0f / 6)), hn::Mul(h3, third));
+    const auto fourths = hn::Sub(hn::Mul(z3, z), hn::Mul(two, hn::Mul(h3, h)));
+    const auto weighed = hn::Sub(hn::Mul(fourths, hn::Set(tag, 1.0f / 12)), hn::Mul(h3, third));
+    return {z, plain, weighed};
+}
+
+// The integral over the slice's tent times (r - p) (r - q), from the later of p and q on.
+template <class V>
+HWY_INLINE V bothCrossings(V z, V w) {
+    const EightTag tag;
+    const auto one = hn::Set(tag, 1.0f);
+    const auto less = hn::Min(z, w);
+    const auto twice = hn::Sub(hn::Mul(hn::Set(tag, 2.0f), hn::Max(z, w)), less);
+    const auto h = hn::Max(hn::Sub(less, one), hn::Zero(tag));
+    const auto whole = hn::Mul(hn::Mul(hn::Mul(less, less), less), twice);
+    const auto past = hn::Mul(hn::Mul(hn::Mul(h, h), h), hn::Sub(twice, one));
+    return hn::Mul(hn::Sub(whole, hn::Mul(hn::Set(tag, 2.0f), past)), hn::Set(tag, 1.0f / 12));
+}
+
+// Between four voxels a linear interpolation is g0 + (g1 - g0) X + d2 (X - 1)+ + d3 (X - 2)+, d2
+// and d3 being second differences: these four, of the first kCount voxels.
+template <int kCount, class V>
+HWY_INLINE void takeDifferences(V* g) {
+    if constexpr (kCount == 4) g[3] = hn::Sub(hn::Sub(g[3], g[2]), hn::Sub(g[2], g[1]));
+    if constexpr (kCount >= 3) g[2] = hn::Sub(hn::Sub(g[2], g[1]), hn::Sub(g[1], g[0]));
+    g[1] = hn::Sub(g[1], g[0]);
+}
+
+// The integrals, over the tent of a slice, of the products of what takeDifferences() has for u and
+// for v.
+template <int kU, int kV, class V>
+HWY_INLINE void takeMoments(const Along<V>& u, const Along<V>& v, V (*m)[4]) {
+    const EightTag tag;
+    const auto two = hn::Set(tag, 2.0f);
+    const auto middleU = hn::Add(u.first, u.slope);
+    const auto middleV = hn::Add(v.first, v.slope);
+    m[0][0] = hn::Set(tag, 1.0f);
+    m[1][0] = middleU;
+    m[0][1] = middleV;
+    m[1][1] = hn::Add(hn::Mul(middleU, middleV),
+                      hn::Mul(hn::Mul(u.slope, v.slope), hn::Set(tag, 1.0f / 6)));
+    Crossing<V> crossU[2], crossV[2];
+    const auto cross = [&](const Along<V>& along, int node) {
+        const auto end = hn::Add(along.first, hn::Mul(two, along.slope));
+        return crossingAt(hn::Mul(hn::Sub(end, hn::Set(tag, float(node))), along.inverse));
+    };
+    for (int i = 0; i < kU - 2; ++i) {
+        crossU[i] = cross(u, i + 1);
+        m[2 + i][0] = hn::Mul(u.slope, crossU[i].plain);
+        const auto end = hn::Add(v.first, hn::Mul(two, v.slope));
+        m[2 + i][1] = hn::Mul(
+            u.slope, hn::Sub(hn::Mul(end, crossU[i].plain), hn::Mul(v.slope, crossU[i].weighed)));
+    }
+    for (int j = 0; j < kV - 2; ++j) {
+        crossV[j] = cross(v, j + 1);
+        m[0][2 + j] = hn::Mul(v.slope, crossV[j].plain);
+        const auto end = hn::Add(u.first, hn::Mul(two, u.slope));
+        m[1][2 + j] = hn::Mul(
+            v.slope, hn::Sub(hn::Mul(end, crossV[j].plain), hn::Mul(u.slope, crossV[j].weighed)));
+    }
+    const auto both = hn::Mul(u.slope, v.slope);
+    for (int i = 0; i < kU - 2; ++i) {
+        for (int j = 0; j < kV - 2; ++j)
+            m[2 + i][2 + j] = hn::Mul(both, bothCrossings(crossU[i].left, crossV[j].left));
+    }
+}
+
+constexpr int kTopShift = 2;
+static_assert(1 << kTopShift == kTopCell);
+
+// Where rays read a patch, and what of it each ray reads first.
+template <class V>
+struct Reading {
+    V u, v;  // 0 <= u, v < 1: behind the voxel that is read first
+    HWY_ALIGN std::int32_t offsets[8];
+    HWY_ALIGN std::int32_t tops[8];  // where the patch's are looked up
+};
+
+// Where they are so many slices behind the first.
+template <class V>
+HWY_INLINE Reading<V> readingAt(const RayPatch& patch, const RayRun& rays, std::size_t i, V slices,
+                                V slopeU, V slopeV) {
+    const EightTag tag;
+    const IntTag ints;
+    const auto u = hn::Add(hn::LoadU(tag, rays.u + i), hn::Mul(slices, slopeU));
+    const auto v = hn::Add(hn::LoadU(tag, rays.v + i), hn::Mul(slices, slopeV));
+    const auto floorU = hn::Floor(u);
+    const auto floorV = hn::Floor(v);
+    // Outside of the patch there is nothing, nor at its border.
+    const auto place = [&](V behind, const std::int32_t* whole, int size) {
+        const auto at = hn::Add(hn::LoadU(ints, whole + i), hn::ConvertTo(ints, behind));
+        return hn::Min(hn::Max(at, hn::Zero(ints)), hn::Set(ints, size - 4));
+    };
+    const auto wholeU = place(floorU, rays.wholeU, patch.sizeU);
+    const auto wholeV = place(floorV, rays.wholeV, patch.sizeV);
+    Reading<V> reading;
+    reading.u = hn::Sub(u, floorU);
+    reading.v = hn::Sub(v, floorV);
+    const auto row = hn::Mul(wholeU, hn::Set(ints, patch.sizeV));
+    hn::Store(hn::Add(row, wholeV), ints, reading.offsets);
+    if (patch.tops) {
+        const auto cells = hn::Mul(hn::ShiftRight<kTopShift>(wholeU), hn::Set(ints, patch.topsV));
+        hn::Store(hn::Add(cells, hn::ShiftRight<kTopShift>(wholeV)), ints, reading.tops);
+    }
+    return reading;
+}
+
+template <int kU, int kV>
+HWY_INLINE void sumRays(const RayPatch& patch, const RayRun& rays, std::size_t i) {
+    const EightTag tag;
+    using V = hn::Vec<EightTag>;
+    const auto slopeU = hn::LoadU(tag, rays.slopeU + i);
+    const auto slopeV = hn::LoadU(tag, rays.slopeV + i);
+    const auto inverse = [&](V slope) {
+        const auto one = hn::Set(tag, 1.0f);
+        const auto none = hn::Eq(slope, hn::Zero(tag));
+        return hn::IfThenZeroElse(none, hn::Div(one, hn::IfThenElse(none, one, slope)));
+    };
+    const auto inverseU = inverse(slopeU);
+    const auto inverseV = inverse(slopeV);
+    const auto firstSlice = hn::LoadU(tag, rays.firstSlice + i);
+    auto sum = hn::LoadU(tag, rays.found + i);
+    auto rest = hn::LoadU(tag, rays.rest + i);
+    const float* values = patch.values;
+    for (int s = 0; s < patch.slices; ++s, values += patch.sliceStep) {
+        const auto slice = hn::Set(tag, float(s));
+        // From the slice before, where the slice's tent begins.
+        const auto begin = hn::Set(tag, float(s - 1));
+        const Reading<V> at = readingAt(patch, rays, i, begin, slopeU, slopeV);
+        V g[4][4];
+        for (int row = 0; row < kU; ++row) {
+            const Fours<V> fours = loadFours(values + row * patch.sizeV, at.offsets);
+            for (int column = 0; column < kV; ++column) g[column][row] = fours.at[column];
+        }
+        V m[4][4];
+        takeMoments<kU, kV>({at.u, slopeU, inverseU}, {at.v, slopeV, inverseV}, m);
+        for (int column = 0; column < kV; ++column) takeDifferences<kU>(g[column]);
+        auto read = hn::Zero(tag);
+        for (int row = 0; row < kU; ++row) {
+            V along[4];
+            for (int column = 0; column < kV; ++column) along[column] = g[column][row];
+            takeDifferences<kV>(along);
+            for (int column = 0; column < kV; ++column)
+                read = hn::Add(read, hn::Mul(along[column], m[row][column]));
+        }
+        read = hn::IfThenElseZero(hn::Ge(slice, firstSlice), read);
+        // What rounding adds is kept and taken off with the next slice.
+        const auto more = hn::Sub(read, rest);
+        const auto next = hn::Add(sum, more);
+        rest = hn::Sub(hn::Sub(next, sum), more);
+        sum = next;
+    }
+    hn::StoreU(sum, tag, rays.found + i);
+    hn::StoreU(rest, tag, rays.rest + i);
+}
+
+// Calls use(i) for the vectors of bundles, of which `i` is the first line.
+template <class Use>
+HWY_INLINE void forVectors(const RayRun& rays, const Use& use) {
+    for (std::size_t n = 0; n < rays.count; ++n) {
+        const std::size_t first = kRayBundle * rays.bundles[n];
+        for (std::size_t i = 0; i < kRayBundle; i += hn::Lanes(EightTag())) use(first + i);
+    }
+}
+
+// Voxels that a ray may read along an axis on its way through the tent of a slice.
+HWY_INLINE int voxelsOf(const float* slopes) {
+    const EightTag tag;
+    float most = 0;
+    for (std::size_t i = 0; i < hn::Lanes(tag); ++i) most = slopes[i] > most ? slopes[i] : most;
+    return most == 0 ? 2 : most <= 0.5f ? 3 : 4;
+}
+
+template <int kU>
+HWY_INLINE void sumRaysOf(const RayPatch& patch, const RayRun& rays, std::size_t i) {
+    switch (voxelsOf(rays.slopeV + i)) {
+        case 2:
+            return sumRays<kU, 2>(patch, rays, i);
+        case 3:
+            return sumRays<kU, 3>(patch, rays, i);
+        default:
+            return sumRays<kU, 4>(patch, rays, i);
+    }
+}
+
+void sumSlicesKernel(const RayPatch& patch, const RayRun& rays) {
+    forVectors(rays, [&](std::size_t i) {
+        switch (voxelsOf(rays.slopeU + i)) {
+            case 2:
+                return sumRaysOf<2>(patch, rays, i);
+            case 3:
+                return sumRaysOf<3>(patch, rays, i);
+            default:
+                return sumRaysOf<4>(patch, rays, i);
+        }
+    });
+}
+
+// The 3x3 voxels around a ray, of each of two slices.
+template <class V>
+struct Cells {
+    V at[2][3][3];
+};
+
+template <class V>
+HWY_INLINE void loadCells(const float* values, const RayPatch& patch, const std::int32_t* offsets,
+                          Cells<V>& cells) {
+    for (int slice = 0; slice < 2; ++slice) {
+        for (int row = 0; row < 3; ++row) {
+            const Fours<V> fours = loadFours(
+                values + slice * patch.sliceStep + row * std::ptrdiff_t{patch.sizeV}, offsets);
+            for (int column = 0; column < 3; ++column)
+                cells.at[slice][row][column] = fours.at[column];
+        }
+    }
+}
+
+// What of three voxels each has that lie beside each other, 0 <= x <= 2 behind the first.
+template <class V>
+HWY_INLINE void takeShares(V x, V* shares) {
+    const EightTag tag;
     const auto zero = hn::Zero(tag);
     const auto one = hn::Set(tag, 1.0f);
-    const auto isWhole = [&](const Weighed<V>& part, V weight) {
-        return hn::And(hn::Eq(part.weight, weight), hn::Eq(part.value, part.value));
-    };
-    const auto whole = hn::And(isWhole(a, hn::Sub(one, share)), isWhole(b, share));
-    const auto sum = hn::Add(a.weight, b.weight);
-    const auto mixed = between(a.value, b.value, hn::Div(b.weight, sum));
-    const auto first = hn::IfThenElse(hn::Eq(b.weight, zero), a.value, mixed);
-    const auto either = hn::IfThenElse(hn::Eq(a.weight, zero), b.value, first);
-    return {hn::IfThenElse(whole, between(a.value, b.value, share), either),
-            hn::IfThenElse(whole, one, sum)};
+    shares[0] = hn::Max(hn::Sub(one, x), zero);
+    shares[1] = hn::Min(x, hn::Sub(hn::Set(tag, 2.0f), x));
+    shares[2] = hn::Max(hn::Sub(x, one), zero);
 }
 
-// Reads what is there, and takes the mean of it. Where all is, it reads as readSlice does.
-template <bool kStraight, class Tag>
-HWY_INLINE auto readActive(Tag tag, const RaySpan& span, std::size_t i, glm::vec2 fraction) {
-    using V = hn::Vec<Tag>;
-    const auto one = hn::Set(tag, 1.0f);
-    const auto load = [&](const float* at, V weight) {
-        const auto value = hn::LoadU(tag, at + i);
-        return Weighed<V>{value, hn::IfThenElseZero(hn::Eq(value, value), weight)};
-    };
-    if constexpr (kStraight) {
-        return load(span.row, one);
-    } else {
-        const auto down = hn::Set(tag, fraction.y);
-        const auto right = hn::Set(tag, fraction.x);
-        const auto column = [&](int x, V share) {
-            auto mean = meanOf(tag, load(span.row + x, hn::Sub(one, down)),
-                               load(span.nextRow + x, down), down);
-            mean.weight = hn::Mul(mean.weight, share);
-            return mean;
-        };
-        return meanOf(tag, column(0, hn::Sub(one, right)), column(1, right), right);
+template <class V>
+HWY_INLINE V mixed(const V* values, const V* shares) {
+    return hn::Add(hn::Add(hn::Mul(values[0], shares[0]), hn::Mul(values[1], shares[1])),
+                   hn::Mul(values[2], shares[2]));
+}
+
+// Reads cells linearly along all axes.
+template <class V>
+HWY_INLINE V readCells(const Cells<V>& cells, const V* sharesU, const V* sharesV, V way) {
+    V slices[2];
+    for (int slice = 0; slice < 2; ++slice) {
+        V rows[3];
+        for (int row = 0; row < 3; ++row) rows[row] = mixed(cells.at[slice][row], sharesV);
+        slices[slice] = mixed(rows, sharesU);
     }
+    const auto rest = hn::Sub(hn::Set(EightTag(), 1.0f), way);
+    return hn::Add(hn::Mul(rest, slices[0]), hn::Mul(way, slices[1]));
 }
 
-// A slice's values, and where they count.
-template <bool kStraight, bool kSkipsNaN, class Tag, class M>
-HWY_INLINE auto readMet(Tag tag, const RaySpan& span, std::size_t i, glm::vec2 fraction, M& met) {
-    if constexpr (kSkipsNaN) {
-        const auto mean = readActive<kStraight>(tag, span, i, fraction);
-        met = hn::And(met, hn::Gt(mean.weight, hn::Zero(tag)));
-        return mean.value;
-    } else {
-        return readSlice<kStraight>(tag, span, i, fraction);
-    }
-}
-
-template <bool kStraight>
-void sumSpansOf(const std::vector<RaySpan>& spans, glm::vec2 fraction) {
-    for (const RaySpan& span : spans) {
-        float* HWY_RESTRICT plane = span.plane;
-        float* HWY_RESTRICT rest = span.rest;
-        forVectors(span.pixels, [&](auto tag, std::size_t i) {
-            const auto read = readSlice<kStraight>(tag, span, i, fraction);
-            const auto had = hn::LoadU(tag, plane + i);
-            const auto more = hn::Sub(read, hn::LoadU(tag, rest + i));
-            const auto sum = hn::Add(had, more);
-            // Zeros add nothing, not even what is left of rounding.
-            const auto none = hn::Eq(read, hn::Zero(tag));
-            hn::StoreU(hn::IfThenElse(none, had, sum), tag, plane + i);
-            const auto left = hn::Sub(hn::Sub(sum, had), more);
-            hn::StoreU(hn::IfThenElse(none, hn::LoadU(tag, rest + i), left), tag, rest + i);
-        });
-    }
-}
-
-void sumSpansKernel(const std::vector<RaySpan>& spans, glm::vec2 fraction) {
-    const bool straight = fraction.x == 0 && fraction.y == 0;
-    straight ? sumSpansOf<true>(spans, fraction) : sumSpansOf<false>(spans, fraction);
-}
-
-// Keeps which slice the larger value is from.
-template <class Tag, class V, class M>
-HWY_INLINE void markPlaces(Tag tag, const RaySpan& span, std::size_t i, V had, V read, M met,
-                           const SliceMark& slice) {
-    const auto larger = slice.isNearer ? hn::Ge(read, had) : hn::Gt(read, had);
-    float* place = span.places + i;
-    hn::StoreU(
-        hn::IfThenElse(hn::And(met, larger), hn::Set(tag, slice.number), hn::LoadU(tag, place)),
-        tag, place);
-}
-
-template <bool kStraight, bool kSkipsNaN>
-HWY_INLINE void maxMet(const RaySpan& span, glm::vec2 fraction, const SliceMark& slice) {
+// The largest of the cells' values; with `active`, of those where it is 1.
+template <class V>
+HWY_INLINE V largestOf(const Cells<V>& cells, const Cells<V>* active) {
     const EightTag tag;
-    float* HWY_RESTRICT plane = span.plane;
-    for (std::size_t i = 0; i < span.pixels; i += hn::Lanes(tag)) {
-        const std::uint8_t bits = std::uint8_t(span.mask[i / 8] >> (i % 8));
-        auto met = hn::LoadMaskBits(tag, &bits);
-        const auto had = hn::LoadU(tag, plane + i);
-        const auto read = readMet<kStraight, kSkipsNaN>(tag, span, i, fraction, met);
-        hn::StoreU(hn::IfThenElse(met, hn::Max(had, read), had), tag, plane + i);
-        if (span.places) markPlaces(tag, span, i, had, read, met, slice);
-    }
-}
-
-template <bool kStraight>
-void maxSpansOf(const std::vector<RaySpan>& spans, glm::vec2 fraction, const SliceMark& slice,
-                bool skipsNaN) {
-    for (const RaySpan& span : spans) {
-        if (span.mask) {
-            skipsNaN ? maxMet<kStraight, true>(span, fraction, slice)
-                     : maxMet<kStraight, false>(span, fraction, slice);
-            continue;
-        }
-        float* HWY_RESTRICT plane = span.plane;
-        forVectors(span.pixels, [&](auto tag, std::size_t i) {
-            const auto read = readSlice<kStraight>(tag, span, i, fraction);
-            const auto had = hn::LoadU(tag, plane + i);
-            hn::StoreU(hn::Max(had, read), tag, plane + i);
-            if (span.places) markPlaces(tag, span, i, had, read, hn::Eq(read, read), slice);
-        });
-    }
-}
-
-void maxSpansKernel(const std::vector<RaySpan>& spans, glm::vec2 fraction, const SliceMark& slice,
-                    bool skipsNaN) {
-    const bool straight = fraction.x == 0 && fraction.y == 0;
-    straight ? maxSpansOf<true>(spans, fraction, slice, skipsNaN)
-             : maxSpansOf<false>(spans, fraction, slice, skipsNaN);
-}
-
-template <class Tag>
-HWY_INLINE void weighPixels(Tag tag, const float* const* rows, const float* weights, int width,
-                            float scale, std::size_t x, float* out) {
-    auto sum = hn::Zero(tag);
-    for (int j = 0; j < width; ++j) {
-        for (int i = 0; i < width; ++i) {
-            const auto value = hn::LoadU(tag, rows[j] + x - i);
-            sum = hn::Add(sum, hn::Mul(hn::Set(tag, weights[j * width + i]), value));
+    const auto nothing = hn::Set(tag, -std::numeric_limits<float>::infinity());
+    auto largest = nothing;
+    for (int slice = 0; slice < 2; ++slice) {
+        for (int row = 0; row < 3; ++row) {
+            for (int column = 0; column < 3; ++column) {
+                auto value = cells.at[slice][row][column];
+                if (active)
+                    value = hn::IfThenElse(hn::Gt(active->at[slice][row][column], hn::Zero(tag)),
+                                           value, nothing);
+                largest = hn::Max(largest, value);
+            }
         }
     }
-    hn::StoreU(hn::Mul(sum, hn::Set(tag, scale)), tag, out + x);
+    return largest;
 }
 
-void weighRowKernel(const float* const* rows, const float* weights, int width, float scale,
-                    std::size_t pixels, float* out) {
-    const FullTag full;
-    const hn::CappedTag<float, 1> one;
-    std::size_t x = 0;
-    for (; x + hn::Lanes(full) <= pixels; x += hn::Lanes(full))
-        weighPixels(full, rows, weights, width, scale, x, out);
-    for (; x < pixels; ++x) weighPixels(one, rows, weights, width, scale, x, out);
+// What has less of a voxel than this has it by rounding alone.
+constexpr float kLeastShare = 0x1p-20f;
+
+// The largest values that rays can read from a slice to the next.
+template <class V>
+HWY_INLINE V topsAt(const RayPatch& patch, const Reading<V>& at, int slice) {
+    const EightTag tag;
+    HWY_ALIGN float found[8];
+    const float* const tops = patch.tops + std::ptrdiff_t{slice} * patch.topsU * patch.topsV;
+    for (std::size_t k = 0; k < hn::Lanes(tag); ++k) found[k] = tops[at.tops[k]];
+    return hn::Load(tag, found);
+}
+
+// Follows rays from one slice to the next.
+template <class V>
+HWY_INLINE void maxBetween(const RayPatch& patch, const RayRun& rays, std::size_t i, int slice) {
+    const EightTag tag;
+    const auto slopeU = hn::LoadU(tag, rays.slopeU + i);
+    const auto slopeV = hn::LoadU(tag, rays.slopeV + i);
+    const auto number = hn::Set(tag, float(slice));
+    const Reading<V> at = readingAt(patch, rays, i, number, slopeU, slopeV);
+    auto largest = hn::LoadU(tag, rays.found + i);
+    auto met = hn::LoadU(tag, rays.met + i);
+    const bool allMet = hn::AllTrue(tag, hn::Gt(met, hn::Zero(tag)));
+    if (allMet && hn::AllFalse(tag, hn::Gt(topsAt<V>(patch, at, slice), largest))) return;
+    const std::ptrdiff_t first = slice * patch.sliceStep;
+    Cells<V> values, active;
+    loadCells(patch.values + first, patch, at.offsets, values);
+    const bool isWhole = patch.active == nullptr;
+    const bool readsActive = !isWhole && (patch.leavesOut || !allMet);
+    if (readsActive) loadCells(patch.active + first, patch, at.offsets, active);
+    // For each line by itself, so that what is found does not depend on the number of lanes.
+    const auto above =
+        hn::Gt(largestOf(values, patch.leavesOut && readsActive ? &active : nullptr), largest);
+    if (allMet && hn::AllFalse(tag, above)) return;
+    const auto firstSlice = hn::LoadU(tag, rays.firstSlice + i);
+    auto place = hn::LoadU(tag, rays.rest + i);
+    for (int step = 0; step < kRaySteps; ++step) {
+        const auto way = hn::Set(tag, float(step) / kRaySteps);
+        const auto depth = hn::Add(number, way);
+        V sharesU[3], sharesV[3];
+        takeShares(hn::Add(at.u, hn::Mul(way, slopeU)), sharesU);
+        takeShares(hn::Add(at.v, hn::Mul(way, slopeV)), sharesV);
+        auto counts = hn::Ge(depth, firstSlice);
+        auto value = readCells(values, sharesU, sharesV, way);
+        if (readsActive) {
+            const auto share = readCells(active, sharesU, sharesV, way);
+            const auto isSeen = hn::Gt(share, hn::Set(tag, kLeastShare));
+            met = hn::IfThenElse(hn::And(isSeen, counts), hn::Set(tag, 1.0f), met);
+            if (patch.leavesOut) {
+                counts = hn::And(counts, isSeen);
+                value = hn::Div(value, hn::IfThenElse(isSeen, share, hn::Set(tag, 1.0f)));
+            }
+        } else if (isWhole) {
+            met = hn::IfThenElse(counts, hn::Set(tag, 1.0f), met);
+        }
+        // Of equal values the nearest is the one that is seen.
+        const auto larger = hn::And(hn::And(counts, above), hn::Gt(value, largest));
+        largest = hn::IfThenElse(larger, value, largest);
+        place = hn::IfThenElse(larger, hn::Add(hn::Set(tag, rays.depth), depth), place);
+    }
+    hn::StoreU(largest, tag, rays.found + i);
+    hn::StoreU(met, tag, rays.met + i);
+    hn::StoreU(place, tag, rays.rest + i);
+}
+
+void maxSlicesKernel(const RayPatch& patch, const RayRun& rays) {
+    forVectors(rays, [&](std::size_t i) {
+        for (int slice = 0; slice + 1 < patch.slices; ++slice)
+            maxBetween<hn::Vec<EightTag>>(patch, rays, i, slice);
+    });
 }
 
 }  // namespace deltasplat::HWY_NAMESPACE
@@ -289,27 +507,20 @@ HWY_AFTER_NAMESPACE();
 namespace deltasplat {
 
 HWY_EXPORT(readBlockValuesKernel);
-HWY_EXPORT(sumSpansKernel);
-HWY_EXPORT(maxSpansKernel);
-HWY_EXPORT(weighRowKernel);
+HWY_EXPORT(sumSlicesKernel);
+HWY_EXPORT(maxSlicesKernel);
 
 void readBlockValues(const Code* codes, int sliceAxis, const CodeValues& values,
                      const BlockPlace& place) {
     HWY_DYNAMIC_DISPATCH(readBlockValuesKernel)(codes, sliceAxis, values, place);
 }
 
-void sumSpans(const std::vector<RaySpan>& spans, glm::vec2 fraction) {
-    HWY_DYNAMIC_DISPATCH(sumSpansKernel)(spans, fraction);
+void sumSlices(const RayPatch& patch, const RayRun& rays) {
+    HWY_DYNAMIC_DISPATCH(sumSlicesKernel)(patch, rays);
 }
 
-void maxSpans(const std::vector<RaySpan>& spans, glm::vec2 fraction, const SliceMark& slice,
-              bool skipsNaN) {
-    HWY_DYNAMIC_DISPATCH(maxSpansKernel)(spans, fraction, slice, skipsNaN);
-}
-
-void weighRow(const float* const* rows, const float* weights, int width, float scale,
-              std::size_t pixels, float* out) {
-    HWY_DYNAMIC_DISPATCH(weighRowKernel)(rows, weights, width, scale, pixels, out);
+void maxSlices(const RayPatch& patch, const RayRun& rays) {
+    HWY_DYNAMIC_DISPATCH(maxSlicesKernel)(patch, rays);
 }
 
 }  // namespace deltasplat

@@ -3,8 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <glm/vec2.hpp>
-#include <vector>
 
 #include "deltasplat/ingest/code_book.h"
 
@@ -28,43 +26,62 @@ struct BlockPlace {
 void readBlockValues(const Code* codes, int sliceAxis, const CodeValues& values,
                      const BlockPlace& place);
 
-/// A run of pixels along a row of the base plane, and where it reads a slice. The number of pixels
-/// is a multiple of 8; the slice is read one pixel further.
-struct RaySpan {
-    const float* row;      ///< the slice at the run's first pixel
-    const float* nextRow;  ///< the slice one row further
-    float* plane;          ///< the base plane at the run's first pixel
-    float* rest;           ///< likewise, how much the plane is too large; only for sums
-    std::size_t pixels;
-    const std::uint8_t* mask;  ///< bit i: pixel i is met by a voxel; null: all are
-    /// Which slice the base plane's values are from, likewise; null: nobody asks. Only for maxima.
-    float* places = nullptr;
+/// Some slices of a volume as floats, `[slices][sizeU][sizeV]`, and four values more, around lines
+/// of sight that go towards larger positions along every axis.
+struct RayPatch {
+    const float* values = nullptr;
+    /// Likewise 1 where a voxel is active, else 0; null: all are, or nobody asks.
+    const float* active = nullptr;
+    std::ptrdiff_t sliceStep = 0;
+    int slices = 0;
+    int sizeU = 0;
+    int sizeV = 0;
+    /// Of largest values: what is not active, where `values` is 0, has no part in what is read,
+    /// which is the mean of the others by their weights.
+    bool leavesOut = false;
+    /// Of largest values: `[slices - 1][topsU][topsV]`, the largest value that can be read between
+    /// two slices from any of kTopCell x kTopCell first voxels on.
+    const float* tops = nullptr;
+    int topsU = 0;
+    int topsV = 0;
 };
 
-/// A slice that largest values may come from.
-struct SliceMark {
-    float number = 0;
-    bool isNearer = false;  ///< than those before: of equal values its own is the one that is seen
+inline constexpr int kTopCell = 4;
+
+/// Lines of sight side by side, and what they have found so far. Positions are whole voxels from a
+/// patch's first, and how far behind these: bits do not depend on where a patch begins.
+struct RayRun {
+    /// The numbers of those bundles of kRayBundle lines that are followed.
+    const std::size_t* bundles;
+    std::size_t count;  ///< of bundles
+    /// Where lines meet the first slice.
+    const std::int32_t* wholeU;
+    const std::int32_t* wholeV;
+    const float* u;
+    const float* v;
+    const float* slopeU;  ///< voxels along u for each slice, 0 to 1
+    const float* slopeV;
+    const float* firstSlice;  ///< the first that counts; of largest values also between slices
+    float* found;             ///< the sum, or the largest value
+    float* rest;              ///< how much a sum is too large; where a largest value is, in slices
+    float* met;               ///< of largest values: 1 where an active voxel has been met, else 0
+    float depth = 0;          ///< the first slice's, that places are counted on from
 };
 
-/// Reads a slice bilinearly, `fraction` behind its pixels, and adds what it reads to the base
-/// plane; what rounding adds to that is kept in `rest` and taken off with the next slice, so that
-/// many slices are as exact as one. Multiplications and additions are separate and per pixel, so
-/// that every SIMD level gives the same bits. Where neighbours are equal, exactly their value is
-/// read. Masks are not looked at.
-void sumSpans(const std::vector<RaySpan>& spans, glm::vec2 fraction);
+inline constexpr std::size_t kRayBundle = 8;
 
-/// The same, but the base plane keeps the larger of what it has and, where pixels are met, what is
-/// read.
-/// @param skipsNaN  where spans have masks, NaN stands for what is not active: read is the mean of
-///                  the others, by their weights; of equal ones exactly their value
-void maxSpans(const std::vector<RaySpan>& spans, glm::vec2 fraction,
-              const SliceMark& slice = SliceMark(), bool skipsNaN = false);
+/// Adds what lines of sight have of each slice: the integral of its share in a trilinear
+/// interpolation of the values, from the slice before to the slice behind it, in slices. It is
+/// exact but for rounding, and what rounding adds to a sum is taken off with the next slice.
+/// Multiplications and additions are separate and per line, so that every SIMD level gives the same
+/// bits.
+void sumSlices(const RayPatch& patch, const RayRun& rays);
 
-/// Weighs a row's neighbourhood: out[x] = sum over j, i of weights[j * width + i] * rows[j][x - i],
-/// taps in this order, times `scale`.
-/// @param rows  [width]: each may be read from -(width - 1) to pixels - 1
-void weighRow(const float* const* rows, const float* weights, int width, float scale,
-              std::size_t pixels, float* out);
+/// Places that are read on the way from one slice to the next.
+inline constexpr int kRaySteps = 6;
+
+/// Keeps the largest of what lines of sight read, trilinearly, from the patch's first slice to its
+/// last.
+void maxSlices(const RayPatch& patch, const RayRun& rays);
 
 }  // namespace deltasplat

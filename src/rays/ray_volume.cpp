@@ -3,13 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "delta/block_windows.h"
 #include "ingest/codes/leaf_slices.h"
 #include "ingest/delta/delta_origin.h"
 #include "ingest/grids/source_grid.h"
-#include "memory.h"
 
 namespace deltasplat {
 namespace {
@@ -26,7 +24,6 @@ bool isDirect(const CodeBook& book) {
 }
 
 float emptyOf(RayRule rule, float lowest) {
-    if (rule == RayRule::kMaxActive) return std::numeric_limits<float>::quiet_NaN();
     return rule == RayRule::kMax ? std::min(lowest, 0.0f) : 0.0f;
 }
 
@@ -81,9 +78,9 @@ void readSource(const Volume& volume, RayRule rule, const ValueMap& map, std::ve
     for (std::size_t code = 0; code < volume.histogram.size(); ++code)
         slots[code + 1] = volume.histogram[code] > 0 ? Slot(code + 1) : kEmptySlot;
     volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
-        rays.sourceValues = [&tree, map, axis = rays.sliceAxis](const CodeBlock& block,
-                                                                const BlockPlace& place) {
-            const openvdb::Coord origin = blockOrigin(block.position, axis);
+        rays.sourceValues = [&tree, map](const CodeBlock& block, int axis,
+                                         const BlockPlace& place) {
+            const openvdb::Coord origin = blockOrigin(block.position, 0);
             const auto* const leaf = tree.probeConstLeaf(origin);
             leaf ? placeValues(*leaf, axis, map, place)
                  : placeValue(floatOf(map(double(tree.getValue(origin)))), place);
@@ -92,43 +89,40 @@ void readSource(const Volume& volume, RayRule rule, const ValueMap& map, std::ve
 }
 
 // Takes out uniform blocks of nothing: of a sum they are no part.
-void dropZeros(const Volume& volume, int sliceAxis, const ValueMap& map,
-               std::vector<CodeBlock>& blocks) {
+void dropZeros(const Volume& volume, const ValueMap& map, std::vector<CodeBlock>& blocks) {
     volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
         std::erase_if(blocks, [&](const CodeBlock& block) {
             if (block.leaf) return false;
-            const openvdb::Coord origin = blockOrigin(block.position, sliceAxis);
+            const openvdb::Coord origin = blockOrigin(block.position, 0);
             return !tree.probeConstLeaf(origin) && map(double(tree.getValue(origin))) == 0;
         });
     });
 }
 
-// Puts blocks, which are ordered by u and v, in the order of layers, u and v.
-void sortByLayer(const std::vector<CodeBlock>& blocks, RayVolume& rays) {
-    const int first = rays.box.min.x >> 3;
-    const int layers = (rays.box.max.x >> 3) - first + 1;
-    requireMemory("list of layers", 16.0 * layers);
-    rays.begins.assign(std::size_t(layers) + 1, 0);
-    for (const CodeBlock& block : blocks) ++rays.begins[std::size_t(block.position.x - first) + 1];
-    std::partial_sum(rays.begins.begin(), rays.begins.end(), rays.begins.begin());
-    std::vector<std::size_t> next(rays.begins.begin(), rays.begins.end() - 1);
-    rays.blocks.resize(blocks.size());
-    for (const CodeBlock& block : blocks)
-        rays.blocks[next[std::size_t(block.position.x - first)]++] = block;
+// Lists at which numbers of blocks there are any, along each axis.
+void listLayers(RayVolume& rays) {
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<int>& layers = rays.layers[std::size_t(axis)];
+        for (const CodeBlock& block : rays.blocks) {
+            const int number = block.position[axis];
+            if (layers.empty() || layers.back() != number) layers.push_back(number);
+        }
+        std::sort(layers.begin(), layers.end());
+        layers.erase(std::unique(layers.begin(), layers.end()), layers.end());
+    }
 }
 
 }  // namespace
 
-RayVolume makeRayVolume(const Volume& volume, int sliceAxis, RayRule rule, const ValueMap& map) {
+RayVolume makeRayVolume(const Volume& volume, RayRule rule, const ValueMap& map) {
     RayVolume rays;
-    rays.box = permutedBox(volume.box, sliceAxis);
-    rays.sliceAxis = sliceAxis;
+    rays.box = volume.box;
     std::vector<Slot> slots = readValues(volume, rule, map, rays);
     const bool fromSource = volume.source && !volume.codeBook.isExact() && !isOfCodes(volume);
     if (fromSource) readSource(volume, rule, map, slots, rays);
-    std::vector<CodeBlock> blocks = BlockReader(*volume.codes, nullptr, sliceAxis, slots).blocks();
-    if (fromSource && rule == RayRule::kSum) dropZeros(volume, sliceAxis, map, blocks);
-    sortByLayer(blocks, rays);
+    rays.blocks = BlockReader(*volume.codes, nullptr, 0, slots).takeBlocks();
+    if (fromSource && rule == RayRule::kSum) dropZeros(volume, map, rays.blocks);
+    listLayers(rays);
     return rays;
 }
 

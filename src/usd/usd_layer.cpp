@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "deltasplat/error.h"
+#include "memory.h"
 #include "number_text.h"
 #include "optics/small_text.h"
 
@@ -51,6 +52,7 @@ class UsdParser {
         UsdPrim root;
         if (peek() == '(') parseMetadata(root);
         while (peek() != 0) parseStatement(root, 0);
+        requireKept();
         return root;
     }
 
@@ -148,10 +150,10 @@ class UsdParser {
     std::string bracketed(std::string_view open, std::string_view close) {
         at_ += open.size();
         const std::size_t end = text_.find(close, at_);
-        const std::size_t line = text_.find('\n', at_);
-        if (end == std::string::npos || line < end)
+        const bool isEnded = end != std::string::npos;
+        std::string result = text_.substr(at_, isEnded ? end - at_ : 0);
+        if (!isEnded || result.find('\n') != std::string::npos)
             fail(std::string(open) + " without an end", std::string(close));
-        std::string result = text_.substr(at_, end - at_);
         at_ = end + close.size();
         return result;
     }
@@ -244,7 +246,9 @@ class UsdParser {
         ++at_;
         list.kind = Kind::kItems;
         while (!take(close)) {
-            list.items.push_back(value(keepsItems, level + 1));
+            UsdValue item = value(keepsItems, level + 1);
+            if (list.items.size() < kMostUsdItems) list.items.push_back(std::move(item));
+            keep(sizeof(UsdValue));
             if (!take(',') && peek() != close) failHere(std::string(1, close));
         }
     }
@@ -316,7 +320,27 @@ class UsdParser {
         if (peek() == '(') parseMetadata(prim);
         expect('{', "of a prim");
         while (!take('}')) parseStatement(prim, level + 1);
-        parent.children.push_back(std::move(prim));
+        for (UsdProperty& property : prim.properties) sortSamples(property);
+        keep(sizeof(UsdPrim) + prim.name.size());
+        parent.children.add(std::move(prim));
+    }
+
+    static void sortSamples(UsdProperty& property) {
+        std::stable_sort(property.samples.begin(), property.samples.end(),
+                         [](const auto& a, const auto& b) { return a.time < b.time; });
+        property.times.reserve(property.samples.size());
+        for (const UsdSample& sample : property.samples) property.times.push_back(sample.time);
+    }
+
+    // Counts what a layer takes besides the file's text, and asks for it now and then.
+    void keep(std::size_t bytes) {
+        constexpr std::size_t kStep = std::size_t{4} << 20;
+        kept_ += bytes;
+        if (kept_ >= kStep) requireKept();
+    }
+    void requireKept() {
+        // Lists grow to twice of what they hold.
+        requireMemory(file_.string(), 2 * double(std::exchange(kept_, 0)));
     }
 
     void parseProperty(UsdPrim& prim, const std::string& type) {
@@ -342,11 +366,11 @@ class UsdParser {
         skipMetadata();
     }
 
-    static UsdProperty& propertyOf(UsdPrim& prim, const std::string& name, int line) {
-        for (UsdProperty& known : prim.properties)
-            if (known.name == name) return known;
-        prim.properties.push_back({name, line, {}, {}});
-        return prim.properties.back();
+    UsdProperty& propertyOf(UsdPrim& prim, const std::string& name, int line) {
+        if (UsdProperty* const known = prim.properties.find(name)) return *known;
+        constexpr std::size_t kPlaceBytes = 96;
+        keep(sizeof(UsdProperty) + kPlaceBytes + 2 * name.size());
+        return prim.properties.add({name, line, {}, {}, {}});
     }
 
     void parseSamples(UsdProperty& property, bool keeps) {
@@ -358,16 +382,16 @@ class UsdParser {
             expect(':', "behind a time");
             sample.value = value(false, 0);
             if (keeps) property.samples.push_back(std::move(sample));
+            keep(keeps ? sizeof(UsdSample) + sizeof(double) : 0);
             if (!take(',') && peek() != '}') failHere("}");
         }
-        std::stable_sort(property.samples.begin(), property.samples.end(),
-                         [](const auto& a, const auto& b) { return a.time < b.time; });
     }
 
     const std::filesystem::path& file_;
     const std::string& text_;
     std::size_t at_ = 0;
     int line_ = 1;
+    std::size_t kept_ = 0;
 };
 
 }  // namespace
@@ -392,12 +416,6 @@ std::string UsdValue::quoted() const {
             return "a list";
     }
     return "";
-}
-
-const UsdProperty* UsdPrim::find(std::string_view property) const {
-    const auto at = std::find_if(properties.begin(), properties.end(),
-                                 [&](const UsdProperty& one) { return one.name == property; });
-    return at == properties.end() ? nullptr : &*at;
 }
 
 UsdLayer readUsdLayer(const std::filesystem::path& file) {

@@ -103,8 +103,7 @@ std::string kindOf(std::string_view op) {
 // Matrices that turn, scale evenly and move are taken apart between samples: numbers of their own
 // would shrink what turns.
 glm::dmat4 transformAt(const UsdLayer& layer, const UsdProperty& op, double time) {
-    std::vector<double> times;
-    for (const UsdSample& sample : op.samples) times.push_back(sample.time);
+    const std::vector<double>& times = op.times;
     const KeyPlace place = keyPlace(times, time);
     if (!times.empty() && place.share > 0) {
         const glm::dmat4 a = matrixOf(numbersAt(layer, op, times[place.first], 16));
@@ -154,6 +153,9 @@ LocalPlace localPlace(const UsdLayer& layer, const UsdPrim& prim, double time) {
     LocalPlace place;
     const UsdProperty* order = prim.find("xformOpOrder");
     if (!order || !order->value) return place;
+    constexpr std::size_t kMostOps = 256;
+    if (order->value->items.size() > kMostOps)
+        fail(layer, order->line, "an xformOpOrder of more than 256 ops", "at most 256");
     for (const UsdValue& item : order->value->items) {
         std::string_view name = item.text;
         if (name == kReset) {
@@ -200,10 +202,8 @@ UsdChain primAt(const UsdLayer& layer, std::string_view path) {
         path.remove_prefix(1);
         const std::string_view name = path.substr(0, path.find('/'));
         path.remove_prefix(name.size());
-        const auto child = std::find_if(parent->children.begin(), parent->children.end(),
-                                        [&](const UsdPrim& one) { return one.name == name; });
-        if (child == parent->children.end()) return {};
-        parent = &*child;
+        parent = parent->children.find(name);
+        if (!parent) return {};
         chain.push_back(parent);
     }
     return path.empty() ? chain : UsdChain{};
@@ -235,9 +235,7 @@ UsdChain choosePrim(const UsdLayer& layer, std::string_view type, const std::str
 
 UsdValue valueAt(const UsdProperty& property, double time, bool mixes) {
     if (property.samples.empty()) return property.value.value_or(UsdValue());
-    std::vector<double> times;
-    for (const UsdSample& sample : property.samples) times.push_back(sample.time);
-    const KeyPlace place = keyPlace(times, time);
+    const KeyPlace place = keyPlace(property.times, time);
     const UsdValue& first = property.samples[place.first].value;
     if (!mixes || place.share == 0) return first;
     return mixedValues(first, property.samples[place.first + 1].value, place.share);
@@ -270,14 +268,14 @@ glm::dmat4 worldFromPrim(const UsdLayer& layer, const UsdChain& chain, double ti
 void addTimes(const UsdPrim& prim, std::string_view property, std::vector<double>& times) {
     const UsdProperty* found = prim.find(property);
     if (!found) return;
-    for (const UsdSample& sample : found->samples) times.push_back(sample.time);
+    times.insert(times.end(), found->times.begin(), found->times.end());
 }
 
 void addTimes(const UsdChain& chain, std::vector<double>& times) {
     for (const UsdPrim* prim : chain) {
         for (const UsdProperty& property : prim->properties) {
             if (!property.name.starts_with(kOps)) continue;
-            for (const UsdSample& sample : property.samples) times.push_back(sample.time);
+            times.insert(times.end(), property.times.begin(), property.times.end());
         }
     }
 }

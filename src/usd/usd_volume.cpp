@@ -128,9 +128,11 @@ class UsdVolumeReader {
             fail(line, value.quoted() + " for filePath", "@FILE.vdb@");
         const std::filesystem::path given = value.text;
         if (given.extension() != ".vdb") fail(line, value.quoted() + " for filePath", "a .vdb");
-        const std::filesystem::path file = layer_.file.parent_path() / given;
+        // USD takes names apart by their text, whatever folders are links; what is looked at is
+        // what is opened.
+        const std::filesystem::path file = (layer_.file.parent_path() / given).lexically_normal();
         requireConfined(layer_.file, file);
-        return file.lexically_normal();
+        return file;
     }
 
     UsdLayer layer_;

@@ -204,8 +204,10 @@ foreach(grid "cache;density" "cache_named;steam")
 endforeach()
 deltasplat_cli_test(input.cache.info ARGS info cache.vdb
     STDOUT_MATCHES "flags.*shadow.*speed.*density.*not read +phi_obstacle [(]level set with NaN or infinite values[)]")
-foreach(command convert delta)
-    deltasplat_cli_test(input.cache.${command} ARGS ${command} cache.vdb out.vdb CREATES out.vdb
+foreach(command "convert" "delta --scalars-only")
+    separate_arguments(words UNIX_COMMAND "${command}")
+    list(GET words 0 word)
+    deltasplat_cli_test(input.cache.${word} ARGS ${words} cache.vdb out.vdb CREATES out.vdb
         STDERR "deltasplat: warning: cache.vdb: left out phi_obstacle (level set with NaN or infinite values)")
 endforeach()
 deltasplat_cli_test(input.cache.asked EXIT 3 ARGS render cache.vdb -o out.exr --grid phi_obstacle

@@ -107,6 +107,17 @@ openvdb::GridPtrVec cache(const std::string& density) {
             filled<openvdb::FloatGrid>("speed", openvdb::GRID_UNKNOWN, 2), fog};
 }
 
+// Two blocks of 8x8x8 voxels that lie as far apart as indices go.
+openvdb::GridBase::Ptr farApart() {
+    auto grid = openvdb::FloatGrid::create();
+    grid->setName("density");
+    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    constexpr int kFar = (1 << 30) - 8;
+    for (const openvdb::Coord& first : {openvdb::Coord(0), openvdb::Coord(kFar, kFar, kFar)})
+        grid->tree().fill({first, first.offsetBy(7)}, first.x() == 0 ? 0.5f : 1.0f, true);
+    return grid;
+}
+
 // Balls that differ from ball.vdb, each in one way.
 void writeOtherBalls() {
     writeVdb("ball_named.vdb", {ball("smoke")});
@@ -137,6 +148,10 @@ void writeOtherBalls() {
     writeVdb("same_names.vdb", {ball("density"), ball("densitx")});
     writeBytes("same_names.vdb",
                std::regex_replace(readBytes("same_names.vdb"), std::regex("densitx"), "density"));
+    // Grids that would have files of one name.
+    writeVdb("odd_grids.a.vdb", {ball("density")});
+    writeVdb("odd_grids.b.vdb", {ball("a/b"), ball("a_b"), ball("c")});
+    writeBytes("odd_grids.c.vdb", readBytes("same_names.vdb"));
 }
 
 void writeVdbFiles() {
@@ -146,6 +161,7 @@ void writeVdbFiles() {
     surface->setName("surface");
     writeVdb("level_set.vdb", {surface});
     writeVdb("two.vdb", {ball("density"), ball("heat")});
+    writeVdb("far.vdb", {farApart()});
     const auto patient = ball("density");
     patient->insertMeta("deltasplat_space", openvdb::StringMetadata("LPS"));
     writeVdb("patient.vdb", {patient});

@@ -617,9 +617,6 @@ deltasplat_unused(depth_shade --depth-shade "without --mode mip" CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --mode min --depth-shade 0.5)
 deltasplat_unused(mu_water --mu-water "without --mode drr" CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --mode xray --mu-water 0.02)
-deltasplat_unused(xray_sigma_from_eye --sigma "with --mode xray but in --projection ortho"
-    CREATES out.exr
-    ARGS render ${cube} -o out.exr --size 8x8 --mode xray --sigma 1 --projection perspective)
 # Of a file that names no patient's space, --photons in a .png.
 deltasplat_cli_test(unused.photons CREATES out.png
     ARGS render ${cube} -o out.png --size 8x8 --drr --photons 1000
@@ -658,8 +655,8 @@ deltasplat_unused(mip_sigma --sigma "with --mode mip" CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --mode mip --sigma 1)
 deltasplat_unused(xray_tf_png --tf "with --mode xray" CREATES out.png
     ARGS render ${cube} -o out.png --size 8x8 --mode xray --tf tf_good.json)
-deltasplat_cli_test(used.xray_sigma CREATES out.exr
-    ARGS render ${cube} -o out.exr --size 8x8 --mode xray --sigma 1 --float)
+deltasplat_unused(xray_sigma --sigma "with --mode xray" CREATES out.exr
+    ARGS render ${cube} -o out.exr --size 8x8 --mode xray --sigma 1)
 deltasplat_cli_test(used.mip_tf CREATES out.png
     ARGS render ${cube} -o out.png --size 8x8 --mode mip --tf tf_good.json)
 
@@ -673,9 +670,9 @@ deltasplat_cli_test(usage.jpg_bits EXIT 2 ARGS render ${cube} -o out.jpg --bits 
 deltasplat_cli_test(usage.tif_float EXIT 2 ARGS render ${cube} -o out.tif --float
     STDERR "deltasplat: --float: got out.tif; expected an .exr file")
 deltasplat_cli_test(usage.picture_format EXIT 2 ARGS render ${cube} -o out.gif
-    STDERR "deltasplat: out.gif: got extension \".gif\"; expected .exr, .png, .tif or .jpg")
+    STDERR "deltasplat: out.gif: got extension \".gif\"; expected .exr, .png, .tif or .jpg (numbers: .npy, .nrrd or .mha)")
 deltasplat_cli_test(usage.picture_no_format EXIT 2 ARGS render ${cube} -o out
-    STDERR "deltasplat: out: got extension \"\"; expected .exr, .png, .tif or .jpg")
+    STDERR "deltasplat: out: got extension \"\"; expected .exr, .png, .tif or .jpg (numbers: .npy, .nrrd or .mha)")
 # What is drawn over a picture, and where it would say something wrong.
 foreach(option legend scale-bar axes annotate=text)
     string(REGEX REPLACE "=.*" "" name ${option})

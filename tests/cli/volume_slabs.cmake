@@ -48,7 +48,7 @@ deltasplat_cli_test(slabs.other_file EXIT 3
     STDERR "deltasplat: cut.png: got another kind of file; expected a whole part of a picture's slabs"
     ARGS fold cut.png -o out.exr)
 deltasplat_cli_test(slabs.no_picture EXIT 2
-    STDERR "deltasplat: out.gif: got extension \".gif\"; expected .exr, .png, .tif or .jpg"
+    STDERR "deltasplat: out.gif: got extension \".gif\"; expected .exr, .png, .tif or .jpg (numbers: .npy, .nrrd or .mha)"
     ARGS fold cut.png -o out.gif)
 deltasplat_cli_test(slabs.overwrites EXIT 2
     STDERR "deltasplat: --output: got cut.png; expected another file than the parts"

@@ -169,7 +169,7 @@ void addRays(Scenes& scenes) {
     scenes.add("xray-axis", "shepp-logan", cameraOf("top"), Mode::kXray);
     scenes.add("xray-decades", "decades", turned(-40, 30), Mode::kXray);
     scenes.add("xray-faintest", "faintest", turned(10, 5), Mode::kXray);
-    scenes.add("xray-stretched", "hydrogen", turned(120, 30), Mode::kXray).sigma = 0.8;
+    scenes.add("xray-stretched", "hydrogen", turned(120, 30), Mode::kXray);
     scenes.add("mip", "vessels", turned(33, 21), Mode::kMip);
     scenes.add("mip-axis", "marschner-lobb", cameraOf("right"), Mode::kMip);
     scenes.add("mip-decades", "decades", cameraOf("iso"), Mode::kMip);

@@ -12,6 +12,7 @@
 #include "deltasplat/simd.h"
 #include "deltasplat/threads.h"
 #include "property/ray_scene.h"
+#include "property/value_volume.h"
 #include "support/simd_levels.h"
 
 namespace deltasplat::test {
@@ -47,51 +48,27 @@ glm::dmat4 crooked() {
     return matrix;
 }
 
-// What a ray sees by a plain loop over all slices and voxels, in double precision.
-struct Seen {
-    double integral = 0;
-    double highest = 0, lowest = 0, mean = 0;
-    bool met = false;
-};
-
+// What a pixel's line of sight from an eye meets, by a plain loop.
 class PlainEye {
   public:
     PlainEye(const Volume& volume, const Camera& camera)
-        : volume_(volume),
-          camera_(camera),
-          linear_(volume.worldFromIndex),
-          eye_(glm::inverse(linear_) *
-               (camera.targetWorld - camera.targetDistanceWorld * camera.direction -
-                glm::dvec3(volume.worldFromIndex[3]))) {
-        least_ = std::min(volume.codeBook.valueOf(Code(volume.valueMin)), 0.0);
+        : camera_(camera), plain_(plainVolume(volume)) {
+        toIndex_ = glm::inverse(glm::dmat3(volume.worldFromIndex));
+        eye_ = toIndex_ * (camera.targetWorld - camera.targetDistanceWorld * camera.direction -
+                           glm::dvec3(volume.worldFromIndex[3]));
     }
 
-    Seen see(int x, int y) const {
+    reference::Seen see(int x, int y) const {
         const glm::dvec3 world = rayOf(x + 0.5, y + 0.5);
-        const glm::dvec3 ray = glm::inverse(linear_) * world;
-        int s = 2;
-        if (std::abs(ray.y) > std::abs(ray[s])) s = 1;
-        if (std::abs(ray.x) > std::abs(ray[s])) s = 0;
-        const double length = glm::length(world) / std::abs(ray[s]);
         const double depth = camera_.projection == Projection::kLatlong
-                                 ? length
-                                 : glm::dot(world, camera_.direction) / std::abs(ray[s]);
-        const double nearest = camera_.nearWorld / depth;
-        Seen seen;
-        double weights = 0;
-        for (int slice = volume_.box.min[s]; slice <= volume_.box.max[s]; ++slice) {
-            const double middle = (slice - eye_[s]) * (ray[s] > 0 ? 1 : -1);
-            const double from = std::max(middle - 0.5, nearest);
-            const double share = middle + 0.5 - from;
-            if (share <= 0) continue;
-            addSlice(eye_ + 0.5 * (from + middle + 0.5) / std::abs(ray[s]) * ray, s, slice,
-                     share * length, seen, weights);
-        }
-        if (seen.met) seen.mean /= weights;
-        return seen;
+                                 ? glm::length(world)
+                                 : glm::dot(world, camera_.direction);
+        return followLine(plain_, vectorOf(eye_), vectorOf(toIndex_ * world),
+                          camera_.nearWorld / depth);
     }
 
   private:
+    static reference::Vector vectorOf(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
     glm::dvec3 rayOf(double x, double y) const {
         const glm::dvec2 size(camera_.sizePixels);
         if (camera_.projection == Projection::kLatlong) {
@@ -107,43 +84,10 @@ class PlainEye {
                pixel * ((x - 0.5 * size.x) * camera_.right - (y - 0.5 * size.y) * camera_.up);
     }
 
-    void addSlice(const glm::dvec3& at, int s, int slice, double length, Seen& seen,
-                  double& weights) const {
-        const int u = (s + 1) % 3;
-        const int v = (s + 2) % 3;
-        double sum = 0, high = 0, active = 0;
-        for (int j = 0; j < 2; ++j) {
-            for (int i = 0; i < 2; ++i) {
-                glm::ivec3 voxel;
-                voxel[s] = slice;
-                voxel[u] = int(std::floor(at[u])) + i;
-                voxel[v] = int(std::floor(at[v])) + j;
-                const double weight =
-                    (1 - std::abs(at[u] - voxel[u])) * (1 - std::abs(at[v] - voxel[v]));
-                const openvdb::Coord place(voxel.x, voxel.y, voxel.z);
-                const bool on = volume_.codes->tree().isValueOn(place);
-                const double value =
-                    volume_.codeBook.valueOf(volume_.codes->tree().getValue(place));
-                sum += on ? weight * value : 0;
-                active += on ? weight : 0;
-                high += weight * (on ? value : least_);
-            }
-        }
-        seen.integral += sum * length;
-        seen.mean += sum * length;
-        weights += active * length;
-        if (active == 0) return;
-        seen.highest = seen.met ? std::max(seen.highest, high) : high;
-        const double low = sum / active;
-        seen.lowest = seen.met ? std::min(seen.lowest, low) : low;
-        seen.met = true;
-    }
-
-    const Volume& volume_;
     const Camera& camera_;
-    glm::dmat3 linear_;
-    glm::dvec3 eye_;
-    double least_;
+    reference::ValueVolume plain_;
+    glm::dmat3 toIndex_{1.0};
+    glm::dvec3 eye_{0.0};
 };
 
 std::vector<CameraOptions> eyeCameras(const Volume& volume) {
@@ -180,9 +124,10 @@ TEST(RayModes, PicturesFromAnEyeAgreeWithAPlainLoop) {
                 for (int m = 0; m < 4; ++m)
                     images[m] = render(volume, eyeOptions(modes[m], options)).image;
                 int apart = 0;
+                double missed = 0;
                 for (int y = 0; y < camera.sizePixels.y; ++y) {
                     for (int x = 0; x < camera.sizePixels.x; ++x) {
-                        const Seen seen = plain.see(x, y);
+                        const reference::Seen seen = plain.see(x, y);
                         met += seen.met;
                         const float* pixels[4];
                         for (int m = 0; m < 4; ++m) pixels[m] = images[m].pixel(x, y);
@@ -190,14 +135,17 @@ TEST(RayModes, PicturesFromAnEyeAgreeWithAPlainLoop) {
                         apart += pixels[1][3] != float(seen.met);
                         if (pixels[1][3] != float(seen.met)) continue;
                         ASSERT_NEAR(pixels[0][0], seen.integral, 0.02) << x << ' ' << y;
-                        ASSERT_NEAR(pixels[1][0], seen.highest, 1e-3) << x << ' ' << y;
-                        ASSERT_NEAR(pixels[2][0], seen.lowest, 1e-3) << x << ' ' << y;
-                        ASSERT_NEAR(pixels[3][0], seen.mean, 1e-3) << x << ' ' << y;
+                        ASSERT_NEAR(pixels[3][0], seen.mean, 0.01) << x << ' ' << y;
+                        // Places an eighth of a slice apart miss some of a peak.
+                        ASSERT_LE(pixels[1][0], seen.highest + 1e-3) << x << ' ' << y;
+                        ASSERT_GE(pixels[2][0], seen.lowest - 1e-3) << x << ' ' << y;
+                        missed += seen.highest - pixels[1][0] + pixels[2][0] - seen.lowest;
                         ASSERT_EQ(pixels[3][3], pixels[1][3]);
                         ASSERT_EQ(pixels[2][3], pixels[1][3]);
                     }
                 }
-                EXPECT_LE(apart, 4);
+                EXPECT_LE(apart, 20);
+                EXPECT_LE(missed, 2.0 * camera.sizePixels.x * camera.sizePixels.y);
             }
             EXPECT_GT(met, 5000);
         }
@@ -443,7 +391,7 @@ TEST(RayModes, ThreadsAndSimdLevelsGiveTheSamePixels) {
     }
 }
 
-// From far away lines of sight are parallel; the parallel picture is only softer.
+// From far away lines of sight are parallel.
 TEST(RayModes, FarEyeSeesTheParallelPicture) {
     const Volume volume = makeVolume({{0, 0, 0}, {31, 31, 31}}, [](int x, int y, int z) {
         return int(100 + 50 * std::sin(0.2 * x) + 40 * std::cos(0.3 * y + 0.1 * z));
@@ -461,7 +409,7 @@ TEST(RayModes, FarEyeSeesTheParallelPicture) {
         options.camera.apertureMm = 12 * view.pixelWorld;
         const Image far = render(volume, options).image;
         for (std::size_t i = 0; i < far.rgba.size(); ++i)
-            ASSERT_NEAR(far.rgba[i], parallel.rgba[i], 0.02 * std::abs(parallel.rgba[i]))
+            ASSERT_NEAR(far.rgba[i], parallel.rgba[i], 0.001 * std::abs(parallel.rgba[i]))
                 << modeName(mode);
     }
 }

@@ -28,12 +28,10 @@ inline TestView viewOf(const Volume& volume, const glm::dvec3& direction) {
     return view;
 }
 
-/// With an x-ray's footprint of a single pixel, unless `sigma` says otherwise.
-inline RenderOptions optionsOf(Mode mode, const TestView& view, double sigma = 0.2) {
+inline RenderOptions optionsOf(Mode mode, const TestView& view) {
     RenderOptions options;
     options.mode = mode;
     options.camera = view.options();
-    if (mode == Mode::kXray) options.sigma = sigma;
     return options;
 }
 

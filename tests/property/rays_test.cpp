@@ -72,10 +72,8 @@ TEST(Rays, HomogeneousSlabIsValueTimesLength) {
             view.size = {8, 8};
             view.pixelWorld = 0.2 * spacing.x;
             const double expected = 7 * thickness * spacing.z / std::cos(angle);
-            const Image xray = render(volume, optionsOf(Mode::kXray, view, 0.3)).image;
-            // Where slices run across the slab, its faces are steps of a slice.
-            const bool across = std::tan(angle) > spacing.x / spacing.z;
-            const double limit = across ? 0.02 * expected : 2e-5 * expected;
+            const Image xray = render(volume, optionsOf(Mode::kXray, view)).image;
+            const double limit = 2e-6 * expected;
             for (const float value : xray.rgba) ASSERT_NEAR(value, expected, limit);
             for (const float value : render(volume, optionsOf(Mode::kMip, view)).image.rgba)
                 ASSERT_TRUE(value == 7 || value == 1) << value;
@@ -92,7 +90,7 @@ TEST(Rays, BallIsAsDeepAsItsChords) {
         TestView view = viewOf(ball, direction);
         view.size = {41, 41};
         view.pixelWorld = 1;
-        const Image xray = render(ball, optionsOf(Mode::kXray, view, 0.3)).image;
+        const Image xray = render(ball, optionsOf(Mode::kXray, view)).image;
         const Image mip = render(ball, optionsOf(Mode::kMip, view)).image;
         double error = 0;
         int pixels = 0;
@@ -108,9 +106,8 @@ TEST(Rays, BallIsAsDeepAsItsChords) {
                 ++pixels;
             }
         }
-        // On average a lattice is neither deeper nor flatter than the ball, but for the spline's
-        // width (a variance of half a voxel squared), which flattens what is convex.
-        EXPECT_NEAR(error / pixels, -0.15 * 3, 0.13 * 3);
+        // On average a lattice is neither deeper nor flatter than the ball.
+        EXPECT_NEAR(error / pixels, 0, 0.13 * 3);
     }
 }
 
@@ -145,7 +142,7 @@ TEST(Rays, ThreadsAndSimdLevelsGiveTheSamePixels) {
     ++volume.histogram[77];
     for (const Mode mode : kModes) {
         for (const glm::dvec3& direction : kDirections) {
-            const RenderOptions options = optionsOf(mode, viewOf(volume, direction), 0.5);
+            const RenderOptions options = optionsOf(mode, viewOf(volume, direction));
             const Image expected = render(volume, options).image;
             for (const int threads : {1, 2, 3, 8}) {
                 const ThreadLimit limit(threads);

@@ -207,6 +207,23 @@ TEST(SlabFacts, PartsOfPackedDeltasMakeThePicture) {
     }
 }
 
+// A list in a list in a list would be followed down to where the stack ends.
+TEST(SlabFacts, NestedFactsAreRefused) {
+    const TempFolder folder;
+    writeDeltas(2, 16);
+    const std::string deep = std::string(200000, '[') + std::string(200000, ']');
+    testing::writeBytes(kFacts, "{\"deltasplat_slab_facts\":" + deep + ",\"sum\":1}");
+    try {
+        readPart({1, 1, 2});
+        FAIL() << "facts of nothing are taken";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::kInput);
+        EXPECT_EQ(
+            std::string(error.what()),
+            "facts.json: got JSON of more than 32 levels; expected facts of a picture's slabs");
+    }
+}
+
 TEST(SlabFacts, OtherPicturesNeedTheWholeVolume) {
     const TempFolder folder;
     writeDeltas(2, 16);

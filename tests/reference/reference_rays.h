@@ -6,10 +6,11 @@
 
 #include "reference/reference_renderer.h"
 
-/// Line integrals and largest values in double precision, one slice and one sample after the other.
+/// What a line of sight meets of values that are interpolated trilinearly, in double precision: cut
+/// where it crosses a plane of voxels of any axis, between which all is a polynomial.
 namespace reference {
 
-/// Values on a lattice; what is not active holds nothing.
+/// Values on a lattice; what is not active, and what lies around it, holds nothing.
 struct ValueVolume {
     std::array<int, 3> first{};  ///< index of the first voxel, may be negative
     std::array<int, 3> dims{};
@@ -19,23 +20,28 @@ struct ValueVolume {
     Vector origin{};
 };
 
-/// What a pixel sees.
 struct Seen {
-    double value = 0;
-    double share = 0;  ///< how much of the pixel is met by active voxels, 0..1 but for the filter
+    /// Of the values, in world units; nothing counts as 0.
+    double integral = 0;
+    /// Nothing counts as the smallest value there is, if that is negative, else as 0.
+    double highest = 0;
+    /// Of means of the active ones, by their weights; and the mean of all that is met.
+    double lowest = 0, mean = 0;
+    bool met = false;
 };
 
-/// Adds up all slices at the voxel positions of the first one, each read bilinearly where the line
-/// of sight goes through it, times the world distance between slices; then weighs neighbours with a
-/// Gaussian of covariance sigma^2 (I + d d^T). Seen through a quintic B-spline;
-/// the picture must be at least as fine as the voxels. The share is 0.
-std::vector<Seen> lineIntegrals(const ValueVolume& volume, const View& view, double sigma);
+/// Follows one.
+/// @param from, ray  in voxels; it begins at `from + nearest * ray`
+/// @param between    how many places are read for the highest and the lowest between two planes
+Seen followLine(const ValueVolume& volume, const Vector& from, const Vector& ray, double nearest,
+                int between = 32);
 
-/// Takes the largest instead. What is not active counts as the smallest value there is, if that is
-/// negative, else as 0; positions at which no active voxel is read do not count at all.
-std::vector<Seen> largestValues(const ValueVolume& volume, const View& view);
+/// Follows parallel ones through the middles of pixels.
+std::vector<Seen> parallelLines(const ValueVolume& volume, const View& view, int between = 32);
 
-/// Takes the smallest. What is read is the mean of the active voxels, by their weights.
-std::vector<Seen> smallestValues(const ValueVolume& volume, const View& view);
+/// The largest that is read at places `step` world units apart, the first of them at a share of
+/// that behind where a line meets the volume.
+std::vector<double> marchedHighest(const ValueVolume& volume, const View& view, double step,
+                                   double share = 0.5);
 
 }  // namespace reference

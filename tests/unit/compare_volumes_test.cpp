@@ -10,9 +10,11 @@
 #include <glm/mat4x4.hpp>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
+#include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/source_grid.h"
 #include "support/make_volume.h"
 
@@ -501,9 +503,112 @@ TEST(CompareVolumes, OffsetsThatAreNotWholeAreADifference) {
     EXPECT_EQ(compareVolumes(a, b).offset, glm::ivec3(-1, 0, 0));
     b.worldFromIndex[3].x += 1e-5;
     EXPECT_FALSE(compareVolumes(a, b).transformEqual);
-    EXPECT_EQ(compareVolumes(a, b).offset, glm::ivec3(0));
+    // Voxels are compared with those nearest to them all the same.
+    EXPECT_EQ(compareVolumes(a, b).offset, glm::ivec3(-1, 0, 0));
+    EXPECT_EQ(compareVolumes(a, b).maxError, 0);
+    EXPECT_NEAR(compareVolumes(a, b).shift, 1e-5, 1e-12);
+    b.worldFromIndex[3].x += 0.49;
+    EXPECT_EQ(compareVolumes(a, b).offset, glm::ivec3(-1, 0, 0));
+    b.worldFromIndex[3].x -= 0.49;
     EXPECT_TRUE(compareVolumes(a, b, {0, 0, 1e-4}).transformEqual);
     EXPECT_EQ(compareVolumes(a, b, {0, 0, 1e-4}).offset, glm::ivec3(-1, 0, 0));
+}
+
+// A sparse volume somewhere, and a dense one of the same voxels from index 0 on.
+std::pair<Volume, Volume> sparseAndDense(const glm::dmat4& worldFromIndex) {
+    const glm::ivec3 min(100, -40, 7);
+    const auto code = [](int x, int y, int z) { return 10 + (x * 7 + y * 3 + z * 11) % 200; };
+    const glm::ivec3 size(12, 9, 10);
+    Volume sparse = test::makeVolume({min, min + size - 1}, code);
+    sparse.hasBackground = true;
+    sparse.worldFromIndex = worldFromIndex;
+    Volume dense = test::makeVolume({glm::ivec3(0), size - 1}, [&](int x, int y, int z) {
+        return code(x + min.x, y + min.y, z + min.z);
+    });
+    dense.worldFromIndex = glm::translate(worldFromIndex, glm::dvec3(min));
+    return {sparse, dense};
+}
+
+glm::dmat4 asFloats(const glm::dmat4& matrix) {
+    return glm::dmat4(glm::mat4(matrix));
+}
+
+CompareOptions withFloatsInB() {
+    CompareOptions options;
+    options.placeDigitsB = 24;
+    return options;
+}
+
+// A turned grid of voxels a tenth of a unit wide, far from the world's origin.
+glm::dmat4 oddPlace(double distance) {
+    glm::dmat4 place = glm::rotate(glm::dmat4(0.1), 0.3, glm::dvec3(1, 2, 3));
+    place[3] = glm::dvec4(distance / 3, -distance / 7, distance, 1);
+    return place;
+}
+
+// A format of 32-bit floats cannot say the place of a .vdb better than it does.
+TEST(CompareVolumes, PlacesAreEqualAsFarAsBothFormatsTell) {
+    auto [sparse, dense] = sparseAndDense(oddPlace(1000));
+    dense.worldFromIndex = asFloats(dense.worldFromIndex);
+    for (const bool turned : {false, true}) {
+        CompareOptions options = withFloatsInB();
+        if (turned) std::swap(options.placeDigitsA, options.placeDigitsB);
+        const VolumeComparison result = turned ? compareVolumes(dense, sparse, options)
+                                               : compareVolumes(sparse, dense, options);
+        EXPECT_EQ(result.offset, glm::ivec3(100, -40, 7) * (turned ? -1 : 1));
+        EXPECT_GT(result.shift, 1e-5);
+        EXPECT_TRUE(result.transformEqual);
+        EXPECT_TRUE(result.equal());
+        EXPECT_EQ(result.voxels, 12u * 9 * 10);
+    }
+    // Doubles would have told the place.
+    EXPECT_FALSE(compareVolumes(sparse, dense).transformEqual);
+    EXPECT_EQ(compareVolumes(sparse, dense).maxError, 0);
+    // So would floats, a little farther away.
+    for (int number = 0; number < 3; ++number) {
+        Volume moved = dense;
+        double& place = moved.worldFromIndex[3][number];
+        place = double(std::nextafter(float(place), 1e9F));
+        place = double(std::nextafter(float(place), 1e9F));
+        EXPECT_FALSE(compareVolumes(sparse, moved, withFloatsInB()).transformEqual) << number;
+    }
+}
+
+// Far away floats are voxels apart: what is where is said by the boxes then.
+TEST(CompareVolumes, PlacesCoarserThanVoxels) {
+    auto [sparse, dense] = sparseAndDense(oddPlace(1e8));
+    dense.worldFromIndex = asFloats(dense.worldFromIndex);
+    const VolumeComparison result = compareVolumes(sparse, dense, withFloatsInB());
+    EXPECT_GT(result.shift, 0.5);
+    EXPECT_EQ(result.offset, glm::ivec3(100, -40, 7));
+    EXPECT_TRUE(result.equal());
+}
+
+// Bits of unsigned integers that no int64 and no double holds.
+TEST(CompareVolumes, UnsignedIntegersAreExact) {
+    const auto one = [](std::uint64_t value) {
+        auto grid = openvdb::Int64Grid::create(0);
+        grid->tree().setValueOn(Coord(1, 2, 3), std::int64_t(value));
+        Volume volume = volumeOf<openvdb::Int64Grid>(grid);
+        SourceGrid source = *volume.source;
+        source.grid.metadata.insert(kSourceTypeKey, "uint64");
+        volume.source = std::make_shared<const SourceGrid>(std::move(source));
+        return volume;
+    };
+    constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+    constexpr std::uint64_t kHalf = std::uint64_t{1} << 63;
+    for (const std::uint64_t value :
+         {std::uint64_t{1} << 53, kHalf - 1, kHalf, kHalf + 4, kMost - 1}) {
+        const VolumeComparison result = compareVolumes(one(value), one(value + 1));
+        EXPECT_EQ(result.maxError, 1);
+        EXPECT_EQ(result.valueTextA, std::to_string(value));
+        EXPECT_EQ(result.valueTextB, std::to_string(value + 1));
+        EXPECT_TRUE(compareVolumes(one(value), one(value)).equal());
+    }
+    EXPECT_EQ(compareVolumes(one(0), one(kMost)).maxError, 0x1p64);
+    auto real = openvdb::DoubleGrid::create(0);
+    real->tree().setValueOn(Coord(1, 2, 3), 0x1p63);
+    EXPECT_EQ(compareVolumes(volumeOf<openvdb::DoubleGrid>(real), one(kHalf + 5)).maxError, 5);
 }
 
 TEST(CompareVolumes, DenseVolumesThatOverlapInPart) {

@@ -402,6 +402,92 @@ TEST(WriteImage, NoticesAFullDisk) {
     EXPECT_EQ(folder.count(), 4);
 }
 
+// A picture of six numbers, of which one pixel has none.
+Image numbersImage() {
+    Image image({3, 2});
+    for (int i = 0; i < 6; ++i) {
+        float* const rgba = &image.rgba[std::size_t(i) * 4];
+        rgba[0] = rgba[1] = rgba[2] = std::ldexp(float(i) - 2.5F, i * 5);
+        rgba[3] = i == 4 ? 0.0F : 1.0F;
+    }
+    image.rgba[0] = kNan;
+    image.rgba[4] = kInfinity;
+    return image;
+}
+
+std::vector<float> floatsAt(const std::string& bytes, std::size_t place) {
+    std::vector<float> values((bytes.size() - place) / sizeof(float));
+    std::memcpy(values.data(), bytes.data() + place, values.size() * sizeof(float));
+    return values;
+}
+
+std::string encoded(const char* name, const ImageFileOptions& options) {
+    return encodeImage(name, numbersImage(), options);
+}
+
+TEST(WriteImage, PicturesOfNumbersHoldThem) {
+    ImageFileOptions options;
+    options.numbers = true;
+    const float most = std::numeric_limits<float>::max();
+    std::vector<float> expected{0, most, -512, 16384, 1572864, 83886080};
+    const std::string npy = encoded("a.npy", options);
+    EXPECT_EQ(npy.size(), 128U + 6 * 4);
+    EXPECT_EQ(npy.substr(0, 10), std::string("\x93NUMPY\x01\x00\x76\x00", 10));
+    EXPECT_EQ(npy.substr(10, 63),
+              "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }    ");
+    EXPECT_EQ(npy[127], '\n');
+    EXPECT_EQ(floatsAt(npy, 128), expected);
+
+    // The second row alone, and nothing where alpha is 0.
+    options.nothing = -1;
+    options.region = PixelBox{{1, 1}, {3, 2}};
+    EXPECT_EQ(floatsAt(encoded("a.npy", options), 128), (std::vector<float>{-1, 83886080}));
+    options.region.reset();
+    expected[4] = -1;
+
+    options.worldFromPixel = glm::dmat4({0, 2, 0, 0}, {0, 0, -3, 0}, {2, 0, 0, 0}, {10, 20, 30, 1});
+    options.space = "RAS";
+    const std::string nrrd = encoded("a.nrrd", options);
+    const std::string header =
+        "NRRD0005\ntype: float\ndimension: 3\nspace: right-anterior-superior\nsizes: 3 2 1\n"
+        "space directions: (0,2,0) (0,0,-3) (2,0,0)\nkinds: domain domain domain\n"
+        "endian: little\nencoding: raw\nspace origin: (10,20,30)\n\n";
+    EXPECT_EQ(nrrd.substr(0, header.size()), header);
+    EXPECT_EQ(floatsAt(nrrd, header.size()), expected);
+    // MetaImage's world is LPS.
+    const std::string mha = encoded("a.mha", options);
+    const std::size_t values = mha.size() - 6 * sizeof(float);
+    EXPECT_EQ(mha.substr(0, values),
+              "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+              "CompressedData = False\nTransformMatrix = 0 -1 0 0 0 -1 -1 0 0\n"
+              "Offset = -10 -20 30\nCenterOfRotation = 0 0 0\nElementSpacing = 2 3 2\n"
+              "DimSize = 3 2 1\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n");
+    EXPECT_EQ(floatsAt(mha, values), expected);
+    // A part of the picture lies where it lay.
+    options.region = PixelBox{{1, 1}, {3, 2}};
+    EXPECT_NE(encoded("a.nrrd", options).find("space origin: (10,22,27)\n"), std::string::npos);
+
+    const test::TempFolder folder;
+    options.region.reset();
+    writeImage(folder / "a.tif", numbersImage(), options);
+    const auto tiff = OIIO::ImageInput::open((folder / "a.tif").string());
+    ASSERT_TRUE(tiff);
+    EXPECT_EQ(tiff->spec().nchannels, 1);
+    EXPECT_EQ(tiff->spec().format, OIIO::TypeFloat);
+    std::vector<float> read(6);
+    ASSERT_TRUE(tiff->read_image(0, 0, 0, 1, OIIO::TypeFloat, read.data()));
+    EXPECT_EQ(read, expected);
+}
+
+TEST(WriteImage, PicturesOfColoursAreNoNumbers) {
+    for (const char* const name : {"a.npy", "a.nrrd", "a.mha"}) {
+        EXPECT_EQ(errorOf([&] { encoded(name, {}); }),
+                  std::string("usage: ") + name +
+                      ": got a picture of colours; expected one of numbers, or .exr, .png, .tif or "
+                      ".jpg");
+    }
+}
+
 TEST(CheckImageFile, AcceptsWhatCanBeWrittenAndLeavesNothing) {
     const test::TempFolder folder;
     for (const char* name : {"a.exr", "a.png", "a.PNG", "a.tif", "a.tiff", "a.JPG", "a.jpeg"})
@@ -414,9 +500,11 @@ TEST(CheckImageFile, RefusesWhatCannot) {
         return errorOf([&] { checkImageFile(file, {8, 8}, options); });
     };
     EXPECT_EQ(check("out.gif", {}),
-              "usage: out.gif: got extension \".gif\"; expected .exr, .png, .tif or .jpg");
+              "usage: out.gif: got extension \".gif\"; expected .exr, .png, .tif or .jpg (numbers: "
+              ".npy, .nrrd or .mha)");
     EXPECT_EQ(check("out", {}),
-              "usage: out: got extension \"\"; expected .exr, .png, .tif or .jpg");
+              "usage: out: got extension \"\"; expected .exr, .png, .tif or .jpg (numbers: .npy, "
+              ".nrrd or .mha)");
     ImageFileOptions sixteen;
     sixteen.bits = 16;
     EXPECT_EQ(check("out.jpg", sixteen), "usage: `bits`: got 16; expected 8 in a .jpg");

@@ -103,6 +103,22 @@ TEST(InputFiles, ReadersConfineWhenAsked) {
                 "in/a.raw: got the file in/a.raw outside of its folder; expected files inside of "
                 "it (`confineInputs`)",
                 [&] { readVolume("in/a.raw", options); });
+
+    // What a pattern finds is confined to the pattern's own folder.
+    std::filesystem::create_directories("up/own");
+    std::filesystem::create_directory_symlink("../in", "up/out");
+    std::filesystem::create_directory_symlink("own", "up/round");
+    EXPECT_NO_THROW(requireFoundIn("up", "up/own/x.raw"));
+    EXPECT_NO_THROW(requireFoundIn("up", "up/round/x.raw"));
+    EXPECT_NO_THROW(requireFoundIn("up", "up/own"));
+    EXPECT_NO_THROW(requireFoundIn("", "in/a.raw"));
+    EXPECT_NO_THROW(requireFoundIn("up/out", "up/out/a.raw"));
+    expectError(ErrorCode::kInput,
+                "up/out/a.raw: got a folder outside of up, in which the pattern looks; expected "
+                "folders inside of it (`confineInputs`)",
+                [] { requireFoundIn("up", "up/out/a.raw"); });
+    EXPECT_THROW(requireFoundIn("up", "up/out"), Error);
+    EXPECT_THROW(requireFoundIn("", "/"), Error);
 }
 
 }  // namespace

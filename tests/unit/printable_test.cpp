@@ -24,6 +24,22 @@ TEST(Printable, WhatControlsATerminalDoesNot) {
               "?31m?");
 }
 
+// A name must not make what stands behind it read otherwise, nor look like another name.
+TEST(Printable, WhatTurnsOrHidesTextDoesNot) {
+    EXPECT_EQ(printable("cloud\xe2\x80\xaegnp.vdb"), "cloud?gnp.vdb");  // U+202E
+    for (const std::string sign :
+         {"\xc2\xad", "\xd8\x9c", "\xe1\xa0\x8e", "\xe2\x80\x8b", "\xe2\x80\x8e", "\xe2\x80\x8f",
+          "\xe2\x80\xa8", "\xe2\x80\xa9", "\xe2\x80\xaa", "\xe2\x81\xa0", "\xe2\x81\xa6",
+          "\xe2\x81\xa9", "\xef\xbb\xbf", "\xef\xbf\xb9", "\xf3\xa0\x80\x81", "\xf3\xa0\x81\xbf"}) {
+        EXPECT_EQ(printable("a" + sign + "b"), "a?b");
+    }
+    // Joiners and what comes right before and behind the others are of words.
+    for (const std::string sign : {"\xe2\x80\x8c", "\xe2\x80\x8d", "\xe2\x80\xa7", "\xe2\x80\xaf",
+                                   "\xc2\xae", "\xef\xbb\xbe", "\xf3\xa0\x84\x80"}) {
+        EXPECT_EQ(printable("a" + sign + "b"), "a" + sign + "b");
+    }
+}
+
 // Each byte is one sign, and what follows is read as if it were not there.
 TEST(Printable, BytesThatAreNoUtf8DoNot) {
     EXPECT_EQ(printable("Sch\xe4"

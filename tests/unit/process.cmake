@@ -1,4 +1,5 @@
 deltasplat_test(unit/cgroup_test.cpp)
+deltasplat_test(unit/checked_json_test.cpp)
 deltasplat_test(unit/shared_folder_test.cpp)
 deltasplat_test(unit/paired_files_test.cpp)
 deltasplat_test(unit/commit_pair_test.cpp)

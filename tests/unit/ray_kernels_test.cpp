@@ -3,15 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <random>
 #include <string>
 
 #include "deltasplat/ingest/slot.h"
 #include "deltasplat/simd.h"
-#include "rays/blur_plane.h"
 #include "support/simd_levels.h"
 
 namespace deltasplat {
@@ -59,139 +58,174 @@ TEST(RayKernels, BlocksAreReadInSliceOrder) {
     }
 }
 
-TEST(RayKernels, SpansReadBilinearly) {
-    for (const std::size_t pixels : {8, 24, 64}) {
-        const auto row = randomValues(pixels + 1, 1);
-        const auto nextRow = randomValues(pixels + 1, 2);
-        const auto before = randomValues(pixels, 3);
-        std::vector<std::uint8_t> mask(pixels / 8);
-        for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = std::uint8_t(0x35 + 50 * i);
-        for (const glm::vec2 fraction :
-             {glm::vec2(0), glm::vec2(0.25f, 0.8f), glm::vec2(0, 0.5f)}) {
-            atEveryLevel([&] {
-                std::vector<float> sums = before, largest = before, met = before;
-                std::vector<float> rest(pixels, 0.0f);
-                const float* const at = row.data();
-                const float* const below = nextRow.data();
-                sumSpans({{at, below, sums.data(), rest.data(), pixels, nullptr}}, fraction);
-                maxSpans({{at, below, largest.data(), nullptr, pixels, nullptr}}, fraction);
-                maxSpans({{at, below, met.data(), nullptr, pixels, mask.data()}}, fraction);
-                for (std::size_t i = 0; i < pixels; ++i) {
-                    const double x = fraction.x, y = fraction.y;
-                    const double read = (1 - y) * ((1 - x) * row[i] + x * row[i + 1]) +
-                                        y * ((1 - x) * nextRow[i] + x * nextRow[i + 1]);
-                    const float had = before[i];
-                    ASSERT_NEAR(sums[i], had + read, 1e-6);
-                    ASSERT_NEAR(largest[i], std::max<double>(had, read), 1e-6);
-                    const bool isMet = mask[i / 8] >> (i % 8) & 1;
-                    ASSERT_EQ(met[i], isMet ? largest[i] : had) << i;
-                }
-            });
-        }
-    }
-}
+// Slices of random values, or equal ones, and rays through them.
+struct Scene {
+    static constexpr int kSlices = 6, kU = 24, kV = 27;
+    static constexpr std::size_t kRays = 64;
+    std::vector<float> values, active, tops;
+    std::vector<std::size_t> bundles;
+    std::vector<std::int32_t> wholeU, wholeV;
+    std::vector<float> u, v, slopeU, slopeV, firstSlice, found, rest, met;
 
-// NaN stands for what is not there: the mean is that of the others, by their weights.
-TEST(RayKernels, MissingNeighboursAreLeftOut) {
-    constexpr std::size_t kPixels = 24;
-    const float missing = std::numeric_limits<float>::quiet_NaN();
-    auto row = randomValues(kPixels + 1, 1), nextRow = randomValues(kPixels + 1, 2);
-    for (std::size_t i = 0; i <= kPixels; ++i) {
-        if (i % 3 == 0) row[i] = missing;
-        if (i % 5 < 2) nextRow[i] = missing;
+    explicit Scene(float start) : values(randomValues(kSlices * kU * kV + 4, 1)) {
+        std::mt19937 random(7);
+        std::uniform_real_distribution<float> uniform(0, 1);
+        for (std::size_t i = 0; i < kRays; ++i) {
+            wholeU.push_back(2 + int(i % 12));
+            wholeV.push_back(2 + int(i * 7 % 14));
+            u.push_back(uniform(random));
+            v.push_back(uniform(random));
+            // Straight, from corner to corner, nearly straight, and anything.
+            slopeU.push_back(i < 16 ? float(i & 1) : i < 32 ? 0x1p-20f : uniform(random));
+            slopeV.push_back(i < 16 ? float(i >> 1 & 1) : i < 32 ? 0.4f : uniform(random));
+            if (i % 5 == 0) u.back() = 0;
+            firstSlice.push_back(-100);
+        }
+        for (std::size_t i = 0; i < kRays / kRayBundle; ++i) bundles.push_back(i);
+        found.assign(kRays, start);
+        rest.assign(kRays, 0);
+        met.assign(kRays, 0);
     }
-    for (const glm::vec2 fraction :
-         {glm::vec2(0.25f, 0.8f), glm::vec2(0, 0.5f), glm::vec2(0.7f, 1)}) {
-        const float x = fraction.x, y = fraction.y;
-        std::vector<std::uint8_t> mask(kPixels / 8, 0);
-        std::vector<double> expected(kPixels, -10);
-        for (std::size_t i = 0; i < kPixels; ++i) {
-            const float values[] = {row[i], row[i + 1], nextRow[i], nextRow[i + 1]};
-            const double weights[] = {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};
-            double sum = 0, all = 0;
-            for (int j = 0; j < 4; ++j) {
-                if (std::isnan(values[j])) continue;
-                sum += weights[j] * values[j];
-                all += weights[j];
+    RayPatch patch(bool leavesOut = false) {
+        RayPatch patch;
+        patch.values = values.data();
+        patch.active = active.empty() ? nullptr : active.data();
+        patch.sliceStep = kU * kV;
+        patch.slices = kSlices;
+        patch.sizeU = kU;
+        patch.sizeV = kV;
+        patch.leavesOut = leavesOut;
+        patch.topsU = (kU + kTopCell - 1) / kTopCell;
+        patch.topsV = (kV + kTopCell - 1) / kTopCell;
+        tops.assign(std::size_t(kSlices * patch.topsU * patch.topsV), 1e30f);
+        patch.tops = tops.data();
+        return patch;
+    }
+    RayRun run() {
+        return {bundles.data(),    bundles.size(), wholeU.data(), wholeV.data(),
+                u.data(),          v.data(),       slopeU.data(), slopeV.data(),
+                firstSlice.data(), found.data(),   rest.data(),   met.data()};
+    }
+    // Reads a slice bilinearly at the place where a ray is on its way.
+    double read(const std::vector<float>& of, std::size_t ray, int slice, double way) const {
+        const double x = wholeU[ray] + double(u[ray]) + way * double(slopeU[ray]);
+        const double y = wholeV[ray] + double(v[ray]) + way * double(slopeV[ray]);
+        double sum = 0;
+        for (int i = 0; i < kU; ++i) {
+            for (int j = 0; j < kV; ++j) {
+                const double weight =
+                    std::max(0.0, 1 - std::abs(x - i)) * std::max(0.0, 1 - std::abs(y - j));
+                if (weight > 0) sum += weight * double(of[std::size_t((slice * kU + i) * kV + j)]);
             }
-            if (all == 0) continue;
-            mask[i / 8] |= std::uint8_t(1 << i % 8);
-            expected[i] = sum / all;
         }
-        atEveryLevel([&] {
-            std::vector<float> plane(kPixels, -10);
-            maxSpans({{row.data(), nextRow.data(), plane.data(), nullptr, kPixels, mask.data()}},
-                     fraction, {}, true);
-            for (std::size_t i = 0; i < kPixels; ++i) ASSERT_NEAR(plane[i], expected[i], 2e-6) << i;
-        });
+        return sum;
     }
-}
+};
 
-// With masks and without a pixel has the same bits where all is there.
-TEST(RayKernels, WholeNeighboursAreReadAlike) {
-    const auto row = randomValues(65, 1), nextRow = randomValues(65, 2);
-    const std::vector<std::uint8_t> all(8, 0xFF);
-    for (const glm::vec2 fraction :
-         {glm::vec2(0.1f, 0.77f), glm::vec2(0.3f, 0), glm::vec2(0.3f, 1), glm::vec2(1, 0.2f)}) {
-        atEveryLevel([&] {
-            std::vector<float> plain(64, -10), masked(64, -10);
-            maxSpans({{row.data(), nextRow.data(), plain.data(), nullptr, 64, nullptr}}, fraction);
-            maxSpans({{row.data(), nextRow.data(), masked.data(), nullptr, 64, all.data()}},
-                     fraction, {}, true);
-            EXPECT_EQ(masked, plain);
-        });
+// The integral of each slice's share, by the rule of the midpoint.
+TEST(RayKernels, SlicesAddTheIntegralOfTheirShare) {
+    Scene scene(3);
+    scene.firstSlice[5] = 2;
+    std::vector<double> expected;
+    constexpr int kSteps = 1000;
+    for (std::size_t ray = 0; ray < Scene::kRays; ++ray) {
+        double sum = 3;
+        for (int slice = int(std::max(scene.firstSlice[ray], 0.0f)); slice < Scene::kSlices;
+             ++slice) {
+            for (int k = 0; k < kSteps; ++k) {
+                const double off = -1 + 2 * (k + 0.5) / kSteps;
+                sum += (1 - std::abs(off)) * 2 / kSteps *
+                       scene.read(scene.values, ray, slice, slice + off);
+            }
+        }
+        expected.push_back(sum);
     }
-}
-
-TEST(RayKernels, EqualNeighboursAreReadExactly) {
-    const std::vector<float> row(17, 0.1f);
+    std::vector<float> first;
     atEveryLevel([&] {
-        std::vector<float> plane(16, -std::numeric_limits<float>::infinity());
-        maxSpans({{row.data(), row.data(), plane.data(), nullptr, 16, nullptr}}, {0.3f, 0.77f});
-        for (const float value : plane) ASSERT_EQ(value, 0.1f);
+        Scene again = scene;
+        sumSlices(again.patch(), again.run());
+        for (std::size_t i = 0; i < Scene::kRays; ++i)
+            ASSERT_NEAR(again.found[i], expected[i], 1e-4) << i;
+        if (first.empty()) first = again.found;
+        ASSERT_EQ(again.found, first);
     });
 }
 
-// Sums of a million slices are off by no more than one rounding, and zeros change no bit.
-TEST(SumSpans, KeepsWhatRoundingTakes) {
-    const std::vector<float> row(17, 0.1f);
-    const std::vector<float> zeros(17, 0.0f);
+// The largest of what is read every eighth of a slice; where only active voxels take part, of their
+// means by weights.
+TEST(RayKernels, LargestValuesAreThoseThatAreRead) {
+    for (const bool leavesOut : {false, true}) {
+        Scene scene(-100);
+        for (std::size_t i = 0; i < scene.values.size(); ++i) {
+            scene.active.push_back(i * 7919 % 11 < 2 ? 0.0f : 1.0f);
+            if (leavesOut && scene.active[i] == 0) scene.values[i] = 0;
+        }
+        scene.firstSlice[5] = 1.5f;
+        std::vector<double> expected;
+        for (std::size_t ray = 0; ray < Scene::kRays; ++ray) {
+            double largest = -100;
+            for (int k = 0; k < kRaySteps * (Scene::kSlices - 1); ++k) {
+                const double way = double(k) / kRaySteps;
+                if (way < double(scene.firstSlice[ray])) continue;
+                const int slice = int(way);
+                const auto between = [&](const std::vector<float>& of) {
+                    const double here = scene.read(of, ray, slice, way);
+                    return here + (way - slice) * (scene.read(of, ray, slice + 1, way) - here);
+                };
+                const double share = between(scene.active);
+                if (leavesOut && share < 1e-5) continue;
+                largest = std::max(largest, between(scene.values) / (leavesOut ? share : 1));
+            }
+            expected.push_back(largest);
+        }
+        std::vector<float> first;
+        atEveryLevel([&] {
+            Scene again = scene;
+            maxSlices(again.patch(leavesOut), again.run());
+            for (std::size_t i = 0; i < Scene::kRays; ++i) {
+                ASSERT_NEAR(again.found[i], expected[i], 2e-4) << i;
+                ASSERT_EQ(again.met[i], 1);
+            }
+            if (first.empty()) first = again.found;
+            ASSERT_EQ(again.found, first);
+        });
+    }
+}
+
+// Whether anything is met is a matter of active voxels, and what is met of the first of equal ones.
+TEST(RayKernels, OnlyActiveVoxelsAreMet) {
+    Scene scene(-100);
+    std::fill(scene.values.begin(), scene.values.end(), 2.0f);
+    scene.active.assign(scene.values.size(), 0.0f);
     atEveryLevel([&] {
-        std::vector<float> plane(16, 0.0f), rest(16, 0.0f);
-        constexpr int kSlices = 1'000'000;
-        for (int i = 0; i < kSlices; ++i)
-            sumSpans({{row.data(), row.data(), plane.data(), rest.data(), 16, nullptr}}, {0, 0});
-        const double sum = double(0.1f) * kSlices;
-        for (const float value : plane) ASSERT_NEAR(value, sum, 0x1p-23 * sum);
-        const std::vector<float> before = plane, restBefore = rest;
-        sumSpans({{zeros.data(), zeros.data(), plane.data(), rest.data(), 16, nullptr}}, {0, 0});
-        ASSERT_EQ(plane, before);
-        ASSERT_EQ(rest, restBefore);
+        Scene none = scene, all = scene;
+        maxSlices(none.patch(), none.run());
+        std::fill(all.active.begin(), all.active.end(), 1.0f);
+        maxSlices(all.patch(), all.run());
+        for (std::size_t i = 0; i < Scene::kRays; ++i) {
+            ASSERT_EQ(none.met[i], 0);
+            ASSERT_EQ(all.met[i], 1);
+            ASSERT_NEAR(all.found[i], 2, 1e-6);
+            ASSERT_LE(all.rest[i], 4);
+        }
     });
 }
 
-// One pixel becomes the footprint, wherever it is; weights add up to 1.
-TEST(BlurPlane, StampsTheFootprint) {
-    for (const int width : {1, 3, 4, 7}) {
-        const Footprint footprint = makeFootprint(0.5, {0.4, -0.9}, 1, width);
-        atEveryLevel([&] {
-            RayPlane plane({{-3, 5}, {30, 29}});
-            plane.row(17)[3 + 12] = 8;
-            const RayPlane blurred = blurPlane(plane, footprint, 0.5f);
-            double sum = 0;
-            for (int y = 5; y < 29; ++y) {
-                for (int x = -3; x < 30; ++x) {
-                    const glm::ivec2 p = glm::ivec2(x - 12, y - 17) + footprint.reach();
-                    const bool inside = p.x >= 0 && p.y >= 0 && p.x < width && p.y < width;
-                    const double weight =
-                        inside ? footprint.at(p.x, p.y) / double(Footprint::kOne) : 0;
-                    ASSERT_NEAR(blurred.row(y)[x + 3], 4 * weight, 1e-6) << x << ' ' << y;
-                    sum += blurred.row(y)[x + 3];
-                }
-            }
-            EXPECT_NEAR(sum, 4, 1e-5);
-        });
-    }
+// Sums of very many slices are off by no more than one rounding.
+TEST(RayKernels, SumsKeepWhatRoundingTakes) {
+    Scene scene(0);
+    std::fill(scene.values.begin(), scene.values.end(), 0.1f);
+    std::fill(scene.slopeU.begin(), scene.slopeU.end(), 0.0f);
+    std::fill(scene.slopeV.begin(), scene.slopeV.end(), 0.0f);
+    std::fill(scene.u.begin(), scene.u.end(), 0.0f);
+    std::fill(scene.v.begin(), scene.v.end(), 0.0f);
+    atEveryLevel([&] {
+        Scene again = scene;
+        constexpr int kTimes = 100'000;
+        for (int i = 0; i < kTimes; ++i) sumSlices(again.patch(), again.run());
+        const double sum = double(0.1f) * kTimes * Scene::kSlices;
+        for (const float value : again.found) ASSERT_NEAR(value, sum, 0x1p-23 * sum);
+    });
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "usd/usd_volume.h"
 
+#include <functional>
 #include <random>
 
 #include "unit/camera_helpers.h"
@@ -136,6 +137,51 @@ TEST(UsdVolume, WhatIsWrongIsSaid) {
     for (const auto& one : cases) EXPECT_EQ(said(one.text), one.said) << one.text;
     EXPECT_EQ(said(kScene, "/World/fire"),
               ".usda: got no prim of type Volume at /World/fire; expected one of /World/smoke");
+}
+
+std::string sceneWith(const std::string& statements) {
+    return "#usda 1.0\ndef Volume \"v\"\n{\n rel field:density = </v/d>\n" + statements +
+           " def OpenVDBAsset \"d\"\n {\n asset filePath = @a.vdb@\n }\n}\n";
+}
+
+std::string repeated(int count, const std::function<std::string(int)>& statement) {
+    std::string text;
+    for (int i = 0; i < count; ++i) text += statement(i);
+    return text;
+}
+
+// A hundred thousand of anything takes as long as reading it: the square of it would be hours.
+TEST(UsdVolume, NothingGrowsWithTheSquareOfWhatAFileHas) {
+    const auto expectRead = [](const std::string& statements) {
+        const Read read = readScene(sceneWith(statements));
+        EXPECT_EQ(read.motion.at(0).file.filename(), "a.vdb");
+    };
+    constexpr int kMany = 200000;
+    expectRead(repeated(kMany, [](int i) { return " int a" + std::to_string(i) + " = 1\n"; }));
+    expectRead(repeated(
+        kMany, [](int i) { return " float a.timeSamples = {" + std::to_string(i) + ": 1}\n"; }));
+    expectRead(repeated(kMany, [](int) { return " float a.timeSamples = {5: 1}\n"; }));
+    expectRead(" float a.timeSamples = {" + repeated(kMany, [](int) { return "5: 1, "; }) + "}\n");
+    // All on one line.
+    expectRead(repeated(kMany, [](int i) { return " asset a" + std::to_string(i) + " = @b@;"; }));
+    expectRead(repeated(kMany / 4, [](int i) {
+        const std::string name = "b" + std::to_string(i);
+        return " rel field:" + name + " = </v/" + name + ">\n def OpenVDBAsset \"" + name +
+               "\" { asset filePath = @a.vdb@ }\n";
+    }));
+}
+
+TEST(UsdVolume, WhatWouldBeFollowedForHoursIsRefused) {
+    const auto scene = [](int ops) {
+        return sceneWith(
+            " double3 xformOp:translate = (1, 0, 0)\n uniform token[] xformOpOrder = [" +
+            repeated(ops, [](int) { return "\"xformOp:translate\", "; }) + "]\n");
+    };
+    EXPECT_EQ(readScene(scene(256)).motion.at(0).worldFromVolume[3].x, 256);
+    for (const int ops : {257, 5000}) {
+        EXPECT_EQ(said(scene(ops)),
+                  ".usda:6: got an xformOpOrder of more than 256 ops; expected at most 256");
+    }
 }
 
 TEST(UsdVolume, SpoiltScenesAreReadOrRefused) {

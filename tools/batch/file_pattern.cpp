@@ -144,6 +144,7 @@ class Search {
             folder /= withoutEscapes(parts_[part++]);
         look(folder, {}, part);
         FoundFiles result;
+        result.base = folder;
         for (const auto& [file, within] : files_) result.files.push_back({file, within});
         std::sort(
             result.files.begin(), result.files.end(),

@@ -25,6 +25,7 @@ struct FoundFile {
 
 /// What a pattern has found, in an order in which numbers in names count as numbers.
 struct FoundFiles {
+    std::filesystem::path base;  ///< the last folder before the first `*`, `?` or `[`; may be empty
     std::vector<FoundFile> files;
     /// Folders that may hold more, which cannot be read, each with what the system says.
     std::vector<std::pair<std::filesystem::path, std::string>> unread;

@@ -3,7 +3,9 @@
 
 #include <filesystem>
 #include <map>
+#include <vector>
 
+#include "camera/poses.h"
 #include "deltasplat/cameras/read_camera.h"
 #include "deltasplat/error.h"
 
@@ -16,10 +18,13 @@ struct CameraChoice {
     std::map<int, CameraMotion> ofFrames;  ///< of a file for each frame of a sequence
     std::map<int, Error> unread;           ///< why that of a frame could not be read
 
+    std::filesystem::path posesFile;  ///< of a C-arm in each frame, in place of all that; or empty
+    std::vector<CArmPose> poses;      ///< of frames 1, 2, ...; once they are read
+
     bool isNearGiven = false;  ///< --near counts, not the file's
 
     bool asked() const { return !file.empty(); }
-    bool moves() const { return !motion.frames.empty() || !ofFrames.empty(); }
+    bool moves() const { return !motion.frames.empty() || !ofFrames.empty() || !poses.empty(); }
 };
 
 }  // namespace deltasplat

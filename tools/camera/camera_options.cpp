@@ -69,6 +69,24 @@ FilmCamera filmAt(const CameraChoice& choice, std::optional<int> frame) {
     return motion.at(motion.frames.empty() ? 0 : motion.frames.front());
 }
 
+// Reads where a C-arm stands, which says all of the camera but its target.
+void usePoses(const CLI::App& app, PictureOptions& options) {
+    for (const char* other : kPlaces)
+        if (std::string(other) != "--target") requireOnce(app, "--poses", other);
+    for (const char* other : kLenses) requireOnce(app, "--poses", other);
+    requireOnce(app, "--poses", "--camera");
+    options.camera.poses = readPoses(options.camera.posesFile);
+    applyPose(options.camera.poses.front(), options.render.camera);
+}
+
+const CArmPose& poseAt(const CameraChoice& choice, int frame) {
+    const auto count = int(choice.poses.size());
+    if (frame >= 1 && frame <= count) return choice.poses[std::size_t(frame) - 1];
+    throw Error(ErrorCode::kUsage,
+                gotExpected("--frames", std::to_string(frame),
+                            "1 to " + std::to_string(count) + ", a line of --poses for each"));
+}
+
 // Frames before the first key and behind the last.
 void warnOfHolding(const CameraChoice& choice, const std::vector<int>& frames,
                    const Listener& listener) {
@@ -111,6 +129,11 @@ void applyCamera(const CLI::App& app, const FrameChoice& choiceOfFrames, Picture
                  const Listener& listener) {
     const std::vector<int>& frames = choiceOfFrames.frames;
     CameraChoice& choice = options.camera;
+    if (!choice.posesFile.empty()) {
+        usePoses(app, options);
+        for (const int frame : frames) poseAt(choice, frame);
+        return;
+    }
     if (options.render.camera.worldFromCamera && !choice.asked())
         for (const char* other : kPlaces) requireOnce(app, "--camera-matrix", other);
     if (!choice.asked()) return;
@@ -142,17 +165,23 @@ void applyCamera(const CLI::App& app, const FrameChoice& choiceOfFrames, Picture
 }
 
 std::filesystem::path cameraFile(const PictureOptions& options) {
+    if (!options.camera.posesFile.empty()) return options.camera.posesFile;
     const std::filesystem::path& given = options.camera.file;
     const std::optional<FileAndName> found = findFileAndName("--camera", given);
     return found ? found->file : given;
 }
 
 bool cameraMoves(const PictureOptions& options) {
-    return options.camera.asked() && options.camera.moves();
+    return options.camera.moves();
 }
 
 CameraOptions cameraAt(const PictureOptions& options, std::optional<int> frame) {
     const CameraOptions& given = options.render.camera;
+    if (frame && !options.camera.poses.empty()) {
+        CameraOptions posed = given;
+        applyPose(poseAt(options.camera, *frame), posed);
+        return posed;
+    }
     CameraOptions camera = cameraOptions(filmAt(options.camera, frame), given.sizePixels);
     camera.up = given.up;
     if (options.camera.isNearGiven) camera.nearWorld = given.nearWorld;

@@ -13,7 +13,7 @@ namespace deltasplat {
 /// Declares the options of cameras that other programs have made.
 void addCameraFileOptions(CLI::App& app, PictureOptions& options);
 
-/// Refuses what says twice where the camera is, and reads the file of --camera.
+/// Refuses what says twice where the camera is, and reads the file of --camera or --poses.
 /// @param frames  of a sequence; none: a single picture, which is shown by the first key. With
 ///                `keepGoing` those whose own file cannot be read fail later, unless all do
 /// @throw Error(kUsage), or Error(kInput) for the file
@@ -21,14 +21,14 @@ void applyCamera(const CLI::App& app, const FrameChoice& frames, PictureOptions&
                  const Listener& listener);
 
 /// Returns the file that a camera is read from; of several the name that they have in common. Empty
-/// without --camera.
+/// without --camera and --poses.
 std::filesystem::path cameraFile(const PictureOptions& options);
 
 /// Returns whether the camera is another one in each frame.
 bool cameraMoves(const PictureOptions& options);
 
 /// Returns the camera that a file describes, at a frame or, without one, at its first key.
-/// @param options  after applyCamera, with --camera
+/// @param options  after applyCamera, with --camera or --poses
 /// @throw Error(kInput) if that frame's could not be read
 CameraOptions cameraAt(const PictureOptions& options, std::optional<int> frame);
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "box_voxels.h"
 #include "options/parse.h"
 #include "process/peak_bytes.h"
 #include "text/json_text.h"
@@ -15,7 +16,7 @@ namespace deltasplat {
 namespace fs = std::filesystem;
 
 void ConversionStats::add(const Volume& volume, const std::string& codeBook) {
-    voxels += std::uint64_t(volume.box.voxels());
+    voxels += voxelsOf(volume.box);
     active += volume.activeCount;
     maxError = std::max(maxError, volume.readError);
     lossless = lossless && volume.replaced == 0 && volume.readError == 0;

@@ -10,11 +10,13 @@
 #include "conversion/run_conversion.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
+#include "deltasplat/ingest/list_grids.h"
 #include "ingest/delta/delta_origin.h"
 #include "ingest/files/file_name.h"
 #include "listener_part.h"
 #include "number_text.h"
 #include "options/input_options.h"
+#include "options/parse.h"
 #include "process/print_out.h"
 #include "subcommands.h"
 
@@ -43,6 +45,7 @@ struct DeltaCommand {
     ReadOptions read;
     DeltaFileOptions file;
     std::optional<bool> packs;
+    bool scalarsAlone = false;  // others may be lost
 };
 
 Parser<std::optional<int>> sliceAxis() {
@@ -88,7 +91,11 @@ void declareOptions(CLI::App& app, DeltaCommand& command) {
                    "themselves as a rule: smaller, and not lossless");
     deltas.addValue("--max-error", "E", command.file.maxError, number(0),
                     "Fail, and write nothing, if a value would come back with a\n"
-                    "larger error than E data units, or a grid not at all");
+                    "larger error than E data units");
+    deltas.addFlag("--scalars-only", command.scalarsAlone,
+                   "Leave out grids that are not scalar, as vectors and points are,\n"
+                   "with a warning (default: a file with such grids fails, and\n"
+                   "nothing is written)");
     deltas.addValue("--tolerance", "T", command.file.tolerance.relative, number(0, 1),
                     withDefault("Keep a voxel's value while the true one stays within T times\n"
                                 "its magnitude",
@@ -139,6 +146,21 @@ void warnOfWholeNumbers(const Volume& volume, const DeltaFileEntry& entry,
                   " (--max-error 0 refuses)");
 }
 
+[[noreturn]] void refuseOthers(const std::filesystem::path& input, const std::string& others) {
+    throw Error(ErrorCode::kFailed,
+                gotExpected(input.string(), others + ", which no delta grid holds",
+                            "scalar grids alone (--scalars-only leaves out others)"));
+}
+
+// Asked before hours of work, as far as it can be known.
+void requireScalars(const DeltaCommand& command, const std::filesystem::path& input) {
+    const bool mayHoldOthers = lowerExtension(input) == ".vdb" && command.read.gridName.empty();
+    if (command.scalarsAlone || !mayHoldOthers) return;
+    const GridList grids = listGrids(input);
+    if (!grids.scalar.empty() && !grids.others.empty())
+        refuseOthers(input, joinNames(grids.others));
+}
+
 ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
                            const ConversionFiles& files, const Listener& listener) {
     ReadOptions reading = command.read;
@@ -152,6 +174,7 @@ ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
         reading.bytesPerInexactBlock += kBytesPerPackedInexactBlock;
     }
     warnOfUnusedInputOptions(app, {files.input}, listener);
+    requireScalars(command, files.input);
     ConversionStats stats;
     DeltaFile file;
     Listener remarks;
@@ -170,10 +193,7 @@ ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
             add(entry, stats);
         },
         partOf(listener, 0, kTakeShare));
-    if (command.file.maxError && !others.empty())
-        throw Error(ErrorCode::kFailed,
-                    gotExpected(files.input.string(), others,
-                                "scalar grids alone, for others are left out (--max-error)"));
+    if (!command.scalarsAlone && !others.empty()) refuseOthers(files.input, others);
     file.write(files.output);
     listener.report(1);
     stats.outputBytes = bytesOf({files.output});

@@ -12,6 +12,7 @@
 #include "ingest/files/file_name.h"
 #include "ingest/grids/grid_errors.h"
 #include "ingest/grids/source_grid.h"
+#include "ingest/read_compared.h"
 #include "ingest/vdb/packed_grid.h"
 #include "listener.h"
 #include "modules/load_early.h"
@@ -119,7 +120,7 @@ Volume readOne(const std::filesystem::path& file, const std::string& grid, ReadO
     if (packed) {
         if (auto volume = readPackedVolume(file, options, listener)) return std::move(*volume);
     }
-    Volume volume = readVolume(file, options, listener);
+    Volume volume = readCompared(file, options, listener);
     // The volume's own values are all that is looked at.
     if (volume.source) volume.codes.reset();
     return volume;
@@ -135,8 +136,10 @@ GridDiff compareGrids(const DiffOptions& options, const GridPair& pair, bool pac
     // What is packed is read while it is compared.
     const bool areRead =
         !diff.a.source || !diff.a.source->packed || !diff.b.source || !diff.b.source->packed;
-    diff.comparison =
-        compareVolumes(diff.a, diff.b, options.compare, stage(areRead ? kReadB : 0, 1));
+    CompareOptions compare = options.compare;
+    compare.placeDigitsA = placeDigitsOf(options.a);
+    compare.placeDigitsB = placeDigitsOf(options.b);
+    diff.comparison = compareVolumes(diff.a, diff.b, compare, stage(areRead ? kReadB : 0, 1));
     diff.verdict = judge(diff.comparison, options.compare, options.limits);
     for (Volume* volume : {&diff.a, &diff.b}) {
         volume->codes.reset();

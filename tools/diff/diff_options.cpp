@@ -37,7 +37,8 @@ void addDiffOptions(CLI::App& app, DiffOptions& options) {
     group.addValue("--hardwarn", "C", limits.hardWarn, threshold,
                    "Warning if any error is over C (default: no limit)");
     group.addValue("--shift", "V", compare.shift, threshold,
-                   withDefault("Different if a voxel's place differs by more than V voxels.\n"
+                   withDefault("Different if a voxel's place differs by more than V voxels, and\n"
+                               "by more than the coarser of both formats can tell.\n"
                                "Transforms a whole number of voxels apart, as those of a .vdb\n"
                                "and of what it was converted to, agree: voxels at the same\n"
                                "place in the world are compared",

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "box_voxels.h"
 #include "deltasplat/ingest/label_list.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "info/sequence_report.h"
@@ -120,7 +121,7 @@ Json toJson(const GridReport& report, const Json& transferFunction) {
 }  // namespace
 
 double comparability(const GridReport& report, int axis) {
-    const double voxels = double(report.volume.box.voxels());
+    const double voxels = double(voxelsOf(report.volume.box));
     return voxels > 0 ? 1 - double(report.counts[axis].deltas) / voxels : 1;
 }
 

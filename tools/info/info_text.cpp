@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "box_voxels.h"
 #include "deltasplat/ingest/label_list.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "info/info_report.h"
@@ -53,7 +54,7 @@ std::string axisText(const GridReport& report, int axis) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4f", comparability(report, axis));
     return "comparability " + std::string(text) + " as data, " + std::to_string(counts.deltas) +
-           " deltas (" + percent(double(counts.deltas), double(report.volume.box.voxels())) + ")";
+           " deltas (" + percent(double(counts.deltas), double(voxelsOf(report.volume.box))) + ")";
 }
 
 std::string backgroundText(const GridReport& report) {
@@ -225,7 +226,7 @@ std::string gridText(const GridReport& report) {
                      sizeText(v.voxelSize()) + (v.lengthUnit.empty() ? "" : " " + v.lengthUnit)) +
             placeText(v);
     text += textLine("active", std::to_string(v.activeCount) + " (" +
-                                   percent(double(v.activeCount), double(v.box.voxels())) + ")");
+                                   percent(double(v.activeCount), double(voxelsOf(v.box))) + ")");
     text += valuesText(v) + labelsText(v);
     text += textLine("background", backgroundText(report)) + textLine("code book", codeBookText(v));
     if (v.origin) text += textLine("delta grid", deltaText(*v.origin));

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "box_voxels.h"
 #include "drawing/nice_step.h"
 #include "drawing/stroke_font.h"
 #include "number_text.h"
@@ -48,7 +49,7 @@ Curves curvesOf(const std::vector<SliceCounts>& columns, const IndexBox& box, in
     Curves curves;
     curves.slices = box.dims()[axis];
     curves.slicesPerColumn = slicesPerColumn(curves.slices);
-    const double voxels = double(box.voxels());
+    const double voxels = double(voxelsOf(box));
     for (std::size_t i = 0; i < columns.size(); ++i) {
         const int before = int(i) * curves.slicesPerColumn;
         const int slices = std::min(curves.slicesPerColumn, curves.slices - before);

@@ -57,9 +57,10 @@ std::filesystem::path fileOf(const std::string& name) {
     return (program.parent_path() / DELTASPLAT_MODULES / (name + ".so")).lexically_normal();
 }
 
-// An installation may be replaced while a program of the one before runs.
+// An installation may be replaced while a program of the one before runs; and a file may have the
+// name of another one.
 void requireSameVersion(const std::string& name, const std::filesystem::path& file, void* library) {
-    const std::string expected = DELTASPLAT_MODULE_VERSION;
+    const std::string expected = DELTASPLAT_MODULE_VERSION + name;
     const auto* const version =
         static_cast<const char*>(::dlsym(library, "deltasplat_module_version"));
     const std::string got = version ? std::string(version, ::strnlen(version, 100)) : "no version";

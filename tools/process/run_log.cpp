@@ -19,7 +19,10 @@
 #include <string_view>
 #include <utility>
 
+#include "cannot_write.h"
 #include "deltasplat/error.h"
+#include "descriptor.h"
+#include "output_target.h"
 #include "printable.h"
 #include "process/peak_bytes.h"
 
@@ -51,13 +54,17 @@ double processorSeconds() {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
+// A file that lines are added to.
+struct LogFile {
+    OutputTarget target;
+    Descriptor descriptor;
+    bool isNew = false;
+};
+
 class RunLog {
   public:
-    RunLog(std::filesystem::path name, int file, bool isNew, bool asJson)
-        : name_(std::move(name)), file_(file), isNew_(isNew), asJson_(asJson) {}
-    ~RunLog() { close(file_); }
-    RunLog(const RunLog&) = delete;
-    RunLog& operator=(const RunLog&) = delete;
+    RunLog(std::filesystem::path name, LogFile file, bool asJson)
+        : name_(std::move(name)), file_(std::move(file)), asJson_(asJson) {}
 
     void add(LogLevel level, const std::string& text, const Json& more) {
         Json json{{"time", timeText()},
@@ -77,7 +84,7 @@ class RunLog {
         line += '\n';
         const std::lock_guard lock(mutex_);
         // In one piece, for others may write as well.
-        const ssize_t count = ::write(file_, line.data(), line.size());
+        const ssize_t count = ::write(file_.descriptor.get(), line.data(), line.size());
         if (count > 0) written_ += count;
         if (count == ssize_t(line.size()) || failed_ != 0) return;
         failed_ = count < 0 ? errno : ENOSPC;
@@ -85,8 +92,9 @@ class RunLog {
 
     void drop() const {
         struct stat status {};
-        if (isNew_ && ::fstat(file_, &status) == 0 && status.st_size == written_)
-            ::unlink(name_.c_str());
+        if (file_.isNew && ::fstat(file_.descriptor.get(), &status) == 0 &&
+            status.st_size == written_)
+            ::unlinkat(file_.target.folder.get(), file_.target.name.c_str(), 0);
     }
 
     /// Why lines have been lost; empty: none were.
@@ -99,8 +107,7 @@ class RunLog {
 
   private:
     std::filesystem::path name_;
-    int file_;
-    bool isNew_;
+    LogFile file_;
     bool asJson_;
     std::mutex mutex_;
     off_t written_ = 0;
@@ -125,25 +132,37 @@ bool isLog(int file) {
     });
 }
 
+// Links are followed as those of other outputs are: not where another user may have put them.
+LogFile openLog(const std::filesystem::path& name) {
+    LogFile file{findTarget(name), Descriptor(), false};
+    const OutputTarget& target = file.target;
+    // A pipe that is opened to be read as well does not wait for its reader.
+    const auto open = [&](int flags) {
+        constexpr int kFlags = O_RDWR | O_APPEND | O_NOFOLLOW | O_NOCTTY | O_CLOEXEC;
+        return Descriptor(::openat(target.folder.get(), target.name.c_str(), kFlags | flags, 0666));
+    };
+    if (!target.isDevice) file.descriptor = open(O_CREAT | O_EXCL);
+    file.isNew = bool(file.descriptor);
+    if (!file.isNew) file.descriptor = target.isOpenFile ? openDirectly(target) : open(O_CREAT);
+    if (!file.descriptor) throwCannotWrite(name, errno);
+    return file;
+}
+
 }  // namespace
 
 void openRunLog(const std::filesystem::path& file, bool asJson) {
-    constexpr int kFlags = O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC;
-    int descriptor = open(file.c_str(), kFlags | O_EXCL, 0666);
-    const bool isNew = descriptor >= 0;
-    if (!isNew) descriptor = open(file.c_str(), kFlags, 0666);
-    if (descriptor >= 0 && !isLog(descriptor)) {
-        close(descriptor);
+    LogFile opened;
+    try {
+        opened = openLog(file);
+    } catch (const Error& error) {
+        throw Error(error.code(), gotExpected("--log", error.what(), "a file that can be written"));
+    }
+    if (!isLog(opened.descriptor.get())) {
         throw Error(ErrorCode::kUsage,
                     gotExpected("--log", file.string() + ", which holds something else",
                                 "a log, or no file yet"));
     }
-    if (descriptor < 0) {
-        throw Error(ErrorCode::kOutput,
-                    gotExpected("--log", file.string() + " (" + std::strerror(errno) + ")",
-                                "a file that can be written"));
-    }
-    log = std::make_unique<RunLog>(file, descriptor, isNew, asJson);
+    log = std::make_unique<RunLog>(file, std::move(opened), asJson);
 }
 
 std::filesystem::path runLogFile() {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "deltasplat/error.h"
-#include "lower_case.h"
+#include "render/render_modes.h"
 
 namespace deltasplat {
 namespace {
@@ -51,7 +51,7 @@ void addAnnotationOptions(CLI::App& app, AnnotationChoice& choice) {
 void checkAnnotations(const RenderCommand& command) {
     const AnnotationChoice& choice = command.annotations;
     const std::string any = anyOf(choice);
-    if (!any.empty() && lowerCase(command.output.extension().string()) == ".exr") {
+    if (!any.empty() && (isExr(command) || storesValues(command))) {
         refuse(any, command.output.string() + ", whose pixels are light or values alone",
                "a .png (render to both)");
     }

@@ -95,20 +95,44 @@ class Batch {
         BatchItem item{found.file, found.folder, command_.output, {}, grid, {}};
         if (output_) item.output = output_->of(parts, found.file);
         if (stats_) item.stats = stats_->of(parts, found.file);
-        if (output_) take("--output", item.output, nameOfItem(item));
-        take("--progressive", previewOf(item), nameOfItem(item));
-        take("--stats", item.stats, nameOfItem(item));
-        items_.push_back(std::move(item));
+        items_.push_back(item);
+        if (output_) take("--output", *output_, item.output);
+        if (output_) take("--progressive", *output_, previewOf(item));
+        if (stats_) take("--stats", *stats_, item.stats);
     }
 
-    // No two have one file.
-    void take(const std::string& option, const fs::path& file, const std::string& name) {
+    // No two have one file. Where names of grids are the reason the command is not wrong, nor are
+    // other volumes.
+    void take(const std::string& option, const OutputName& name, const fs::path& file) {
         if (file.empty()) return;
-        const auto [known, isNew] = outputs_.emplace(resolved(file), name);
+        const std::size_t last = items_.size() - 1;
+        const auto [known, isNew] = outputs_.emplace(resolved(file), last);
         if (isNew) return;
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(option, file.string() + " for " + known->second + " and " + name,
-                                "a file for each ({dir} tells folders apart, {grid} grids)"));
+        const std::size_t before = known->second;
+        const std::string got = file.string() + " for " + nameOfItem(items_[before]) + " and " +
+                                nameOfItem(items_[last]);
+        if (!differInGrids(name, items_[before], items_[last])) {
+            throw Error(ErrorCode::kUsage,
+                        gotExpected(option, got,
+                                    "a file for each ({dir} tells folders apart, {grid} grids)"));
+        }
+        for (const std::size_t i : {before, last}) {
+            items_[i].output.clear();
+            items_[i].stats.clear();
+            items_[i].failure =
+                Error(ErrorCode::kInput,
+                      gotExpected(items_[i].input.string(), got,
+                                  "grids whose names make a file for each (or --grid NAME)"));
+        }
+    }
+
+    static bool differInGrids(const OutputName& name, const BatchItem& a, const BatchItem& b) {
+        const auto withoutGrid = [&](const BatchItem& item) {
+            return name.of(partsOfInput(item.input, item.folder), item.input);
+        };
+        const bool isOne = &a == &b;
+        const bool areOfOne = a.input == b.input;
+        return name.hasGrid() && !isOne && (areOfOne || withoutGrid(a) != withoutGrid(b));
     }
 
     void requireOthers(const std::string& option, const fs::path& file) const {
@@ -127,7 +151,7 @@ class Batch {
     std::optional<OutputName> stats_;
     std::vector<BatchItem> items_;
     std::set<PlaceOfFile> inputs_;
-    std::map<fs::path, std::string> outputs_;
+    std::map<fs::path, std::size_t> outputs_;  // of which item
 };
 
 }  // namespace
@@ -145,7 +169,13 @@ std::vector<BatchItem> findBatch(const RenderCommand& command, const Listener& l
     }
     for (const FoundFile& one : found.files) {
         listener.report(0);
-        batch.add(one);
+        try {
+            requireFoundIn(found.base, one.file);
+            batch.add(one);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::kInput) throw;
+            batch.fail(one.file, error);
+        }
     }
     for (const auto& [folder, problem] : found.unread) {
         batch.fail(folder, Error(ErrorCode::kInput, gotExpected(folder.string(), problem,

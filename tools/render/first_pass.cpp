@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
 #include <glm/vec2.hpp>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "checked_json.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "file_mark.h"
@@ -23,6 +24,7 @@ namespace deltasplat {
 namespace {
 
 constexpr const char* kFirstPass = "deltasplat_first_pass";
+constexpr const char* kWritten = "what --first-pass has written";
 // In it, what it was made of.
 constexpr const char* kInput = "input";
 constexpr const char* kFrames = "frames";
@@ -126,7 +128,7 @@ std::filesystem::path heldFile(const std::vector<glm::ivec2>& runs, const std::v
     const auto look = [&](std::int64_t frame, std::int64_t end, int step) {
         for (; held.empty() && (end - frame) * step >= 0 && looks < kMostLooks;
              frame += step, ++looks)
-            if (hasInput(name->at(int(frame)))) held = name->at(int(frame));
+            if (hasInput(name->at(int(frame)))) held = name->inputAt(int(frame));
     };
     const std::int64_t first = frames.front();
     const std::vector<glm::ivec2> backwards(runs.rbegin(), runs.rend());
@@ -155,22 +157,18 @@ std::optional<std::filesystem::path> readFirstPass(const RenderCommand& command,
     if (file.empty()) return {};
     std::error_code error;
     if (!std::filesystem::exists(file, error) && !error) return {};
-    std::ifstream in(file);
-    if (!in) {
-        throw Error(ErrorCode::kInput, gotExpected(file.string(), "a file that cannot be opened",
-                                                   "a readable file, or none yet"));
-    }
+    Json whole = readCheckedJson(file, kWritten);
+    std::vector<glm::ivec2> runs;
     try {
-        const Json json = Json::parse(in).at(kFirstPass);
+        const Json json = std::move(whole.at(kFirstPass));
         look.takeJson(json);
-        const std::vector<glm::ivec2> runs = runsIn(json);
+        runs = runsIn(json);
         warnOfOthers(json, runs, command, listener);
-        if (command.frames.missing != MissingFrames::kHold) return std::filesystem::path();
-        return heldFile(runs, command.frames.frames, command.input);
     } catch (const std::exception&) {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(file.string(), "something else", "what --first-pass has written"));
+        throw Error(ErrorCode::kInput, gotExpected(file.string(), "something else", kWritten));
     }
+    if (command.frames.missing != MissingFrames::kHold) return std::filesystem::path();
+    return heldFile(runs, command.frames.frames, command.input);
 }
 
 void requireWritableFirstPass(const RenderCommand& command) {

@@ -26,6 +26,21 @@ void fillForJpeg(const RenderCommand& command, Image& image, const Listener& lis
     compositeOver(image, glm::vec4(0, 0, 0, 1));
 }
 
+// Of a C-arm the detector's pixels, of others those of the plane through the target; the third axis
+// goes on along the line of sight.
+std::optional<glm::dmat4> worldFromPixel(const CameraOptions& options, const Camera& camera) {
+    if (camera.projection == Projection::kLatlong) return {};
+    const glm::dvec3 eye = camera.eyeWorld();
+    const double scale = options.sourceToDetectorWorld && options.sourceToIsocenterWorld
+                             ? *options.sourceToDetectorWorld / *options.sourceToIsocenterWorld
+                             : 1;
+    const glm::dvec3 first = eye + scale * (camera.worldFromPixel({0.5, 0.5}) - eye);
+    const double pixel = scale * camera.pixelWorld();
+    return glm::dmat4(glm::dvec4(pixel * camera.right, 0),
+                      glm::dvec4(-scale * camera.pixelHeightWorld() * camera.up, 0),
+                      glm::dvec4(pixel * camera.direction, 0), glm::dvec4(first, 1));
+}
+
 }  // namespace
 
 CodeText codesOf(const Volume& volume) {
@@ -43,6 +58,7 @@ ImageFileOptions imageOptions(const RenderCommand& command, const Camera& camera
     options.cameraFromWorld = camera.cameraFromWorld();
     options.ndcFromWorld = camera.ndcFromWorld();
     options.exr.pixelAspect = camera.pixelAspect;
+    options.worldFromPixel = worldFromPixel(command.picture.render.camera, camera);
     const Metadata common = commonMetadata(session);
     options.metadata.insert(options.metadata.end(), common.begin(), common.end());
     setColors(command, options);
@@ -58,6 +74,8 @@ ImageFileOptions imageOptions(const RenderCommand& command, const CodeText& code
                                                      {"codeBook", codes.book},
                                                      {"codeError", codes.error}});
     const RenderOptions& render = command.picture.render;
+    if (result.stats.mode != Mode::kComposite)
+        options.metadata.emplace_back("kernel", "trilinear, mean of pixels larger than a voxel");
     if (result.stats.mode == Mode::kDrr) {
         options.metadata.emplace_back("muWater", numberText(render.drr.muWater));
         if (render.drr.photons)

@@ -68,7 +68,8 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command, File
     const Files mask = filesOfMask(command.picture.parts);
     inputs.insert(inputs.end(), mask.begin(), mask.end());
     warnOfUnusedInputOptions(app, inputs, display.stage(0, 0));
-    if (isGiven(app, "--bits") && isExr(command)) display.warn("--bits: has no effect on an .exr");
+    if (isGiven(app, "--bits") && (isExr(command) || command.image.numbers))
+        display.warn("--bits: has no effect on an .exr or a picture of numbers");
     if (isGiven(app, "--dither") && (isExr(command) || command.image.bits == 16))
         display.warn("--dither: has no effect but in pictures of 8 bits");
     warnOfUnusedTone(app, command, display);
@@ -200,9 +201,8 @@ void prepare(const CLI::App& app, RenderCommand& command, std::size_t pictures,
 
 void runBatch(const CLI::App& app, const RenderCommand& command, const Session& session) {
     WorstBound worst;
-    std::vector<BatchFailure> failures;
     const std::jthread loading = loadEarly(command.output);
-    const auto run = [&] {
+    {
         ProgressDisplay display(session.common);
         const Listener listener = display.stage(0, 1);
         const std::vector<BatchItem> items = findBatch(command, listener);
@@ -234,13 +234,7 @@ void runBatch(const CLI::App& app, const RenderCommand& command, const Session& 
         work.end = [&] {
             if (sinks) sinks->finish();
         };
-        renderBatch(command, items, session.commandLine, work, listener, failures);
-    };
-    try {
-        run();
-    } catch (const Error&) {
-        showFailures(failures);
-        throw;
+        renderBatch(command, items, session.commandLine, work, listener);
     }
     worst.show(session);
 }

@@ -3,19 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <utility>
 
 #include "batch/file_pattern.h"
 #include "batch/memory_gate.h"
 #include "batch/output_name.h"
+#include "box_voxels.h"
 #include "conversion/conversion_stats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/threads.h"
 #include "flag_names.h"
 #include "image/thumbnail.h"
+#include "listener.h"
 #include "lower_case.h"
 #include "memory.h"
 #include "output_files.h"
@@ -50,9 +51,9 @@ double bytesFor(const RenderCommand& command) {
     const glm::dvec2 pixels(command.picture.render.camera.sizePixels);
     double bytes = kBytesPerByte * double(bytesOf({command.input}));
     try {
-        std::int64_t voxels = 0;
+        std::uint64_t voxels = 0;
         for (const VolumeEntry& entry : listVolumes(command.input, command.picture.read))
-            if (entry.box) voxels = std::max(voxels, entry.box->voxels());
+            if (entry.box) voxels = std::max(voxels, voxelsOf(*entry.box));
         if (voxels > 0) bytes = std::min(bytes, kBytesPerVoxel * double(voxels));
     } catch (const Error&) {
         return bytes + kBytesPerPixel * pixels.x * pixels.y;
@@ -78,6 +79,7 @@ PictureFacts factsOf(const BatchItem& item, const RenderCommand& command) {
 
 // Values are shown as greys.
 std::string thumbnailOfFile(const fs::path& file, bool holdsValues) {
+    if (isOfNumbers(imageFormatOf(file))) return thumbnailOf(Image());
     Image image = readThumbnail(file, kThumbnailSide);
     if (holdsValues && !image.rgba.empty()) {
         for (std::size_t i = 3; i < image.rgba.size(); i += 4)
@@ -123,14 +125,6 @@ class BatchRun {
     }
 
     const std::vector<IndexEntry>& entries() const { return entries_; }
-
-    std::vector<BatchFailure> failures() const {
-        std::vector<BatchFailure> failures;
-        for (std::size_t i = 0; i < items_.size(); ++i)
-            if (!entries_[i].failure.empty())
-                failures.push_back({nameOfItem(items_[i]), entries_[i].failure});
-        return failures;
-    }
 
   private:
     void noteThoseThere(const std::vector<FrameFiles>& frames) {
@@ -265,8 +259,8 @@ bool isBatch(const CLI::App& app, const RenderCommand& command) {
     if (!hasFrames && isPattern(command.input)) {
         if (command.frames.asked())
             refuse("--frames", "it with a pattern of inputs", "one or the other");
-        for (const char* option :
-             {"--turntable", "--first-pass", "--missing", "--movie", "--fps", "--slab-range"})
+        for (const char* option : {"--turntable", "--poses", "--first-pass", "--missing", "--movie",
+                                   "--fps", "--slab-range"})
             if (isGiven(app, option))
                 refuse(option, "it with a pattern of inputs", "a sequence or one volume");
         if (command.output.empty())
@@ -300,8 +294,7 @@ RenderCommand commandOf(const RenderCommand& command, const BatchItem& item) {
 }
 
 void renderBatch(const RenderCommand& command, const std::vector<BatchItem>& items,
-                 const std::string& commandLine, const BatchWork& work, const Listener& listener,
-                 std::vector<BatchFailure>& failures) {
+                 const std::string& commandLine, const BatchWork& work, const Listener& listener) {
     interruptBetweenFiles();
     const Clock::time_point begin = Clock::now();
     const RenderCommand first = checkFirst(command, items, work);
@@ -311,7 +304,6 @@ void renderBatch(const RenderCommand& command, const std::vector<BatchItem>& ite
     }
     BatchRun run(command, items, work, storesValues(first));
     const auto finish = [&] {
-        failures = run.failures();
         work.end();
         writeIndex(command, first.picture.render.camera.sizePixels, commandLine,
                    secondsSince(begin), run);
@@ -319,23 +311,16 @@ void renderBatch(const RenderCommand& command, const std::vector<BatchItem>& ite
     try {
         run.run(listener);
     } catch (const Error& error) {
-        if (error.code() != ErrorCode::kInterrupted) finish();
+        if (error.code() == ErrorCode::kInterrupted) throw;
+        // What is wrong with the pictures has the last word.
+        try {
+            finish();
+        } catch (const Error& problem) {
+            showError(problem.what());
+        }
         throw;
     }
     finish();
-}
-
-void showFailures(const std::vector<BatchFailure>& failures) {
-    if (failures.empty()) return;
-    std::size_t width = 0;
-    for (const BatchFailure& failure : failures)
-        width = std::max(width, std::min<std::size_t>(failure.name.size(), 60));
-    std::fputs("Failed:\n", stderr);
-    for (const BatchFailure& failure : failures) {
-        std::string name = printable(failure.name);
-        name.resize(std::max(name.size(), width), ' ');
-        std::fprintf(stderr, "  %s  %s\n", name.c_str(), failure.what.c_str());
-    }
 }
 
 }  // namespace deltasplat

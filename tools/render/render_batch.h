@@ -12,12 +12,6 @@
 
 namespace deltasplat {
 
-/// What went wrong with one, for a table.
-struct BatchFailure {
-    std::string name;
-    std::string what;
-};
-
 /// How pictures of a batch are made.
 struct BatchWork {
     /// Finds the volume of an input that only says where one is: all that is read of an input
@@ -48,13 +42,8 @@ RenderCommand commandOf(const RenderCommand& command, const BatchItem& item);
 
 /// Makes all pictures, several at once, as far as they are wanted and can be made, then the index.
 /// @param commandLine  for the index
-/// @param failures     receives what went wrong, in the order of the items
 /// @throw as runFrames; Error(kUsage) before any is made if no picture can be meant so
 void renderBatch(const RenderCommand& command, const std::vector<BatchItem>& items,
-                 const std::string& commandLine, const BatchWork& work, const Listener& listener,
-                 std::vector<BatchFailure>& failures);
-
-/// Shows on standard error what went wrong with which picture.
-void showFailures(const std::vector<BatchFailure>& failures);
+                 const std::string& commandLine, const BatchWork& work, const Listener& listener);
 
 }  // namespace deltasplat

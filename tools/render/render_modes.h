@@ -17,6 +17,9 @@ bool colorsValues(const RenderCommand& command);
 /// floats.
 bool storesValues(const RenderCommand& command);
 
+/// @throw Error(kUsage) for a picture of numbers that its format cannot place
+void checkNumbers(const RenderCommand& command);
+
 /// Whether the picture is to show values as greys.
 bool showsWindow(const RenderCommand& command);
 

@@ -364,6 +364,13 @@ void fixWindow(const std::vector<FrameFiles>& frames, bool isKnown, SequenceLook
     command.window = look.window();
 }
 
+// Frames 1 to `count`, which another option than --frames asks for.
+void useFrames(const char* option, std::size_t count, FrameChoice& frames) {
+    frames.askedBy = option;
+    frames.frames.resize(count);
+    std::iota(frames.frames.begin(), frames.frames.end(), 1);
+}
+
 }  // namespace
 
 void addSequenceOptions(CLI::App& app, RenderCommand& command) {
@@ -376,6 +383,11 @@ void addSequenceOptions(CLI::App& app, RenderCommand& command) {
                    "share one. With --slab-range what all parts have to know of the\n"
                    "volume: those of a delta grid then read what they show alone");
     addSinkOptions(app, command);
+    group.addValue("--poses", "FILE.csv", command.picture.camera.posesFile, anyText(),
+                   "C-arm: a line of numbers for each frame, under the names primary\n"
+                   "(degrees, LAO > 0), secondary (CRA > 0), sid, sdd (as --sid, --sdd)\n"
+                   "and pixel (of the detector, mm); frames 1 to as many as there are\n"
+                   "if --frames names no others; INPUT may be one volume");
     group.addValue("--turntable", "N", command.turntable, wholeNumber(1, 1'000'000),
                    "Turns the camera once around in N frames, 1 to N if --frames names\n"
                    "no others; INPUT may be one volume");
@@ -383,20 +395,21 @@ void addSequenceOptions(CLI::App& app, RenderCommand& command) {
 
 void applySequence(const CLI::App& app, RenderCommand& command) {
     command.readingOptions = readingOptions(app);
+    const CameraChoice& choice = command.picture.camera;
+    const bool hasPoses = !choice.posesFile.empty();
     if (command.turntable &&
-        (command.picture.camera.asked() || command.picture.render.camera.worldFromCamera)) {
-        throw Error(
-            ErrorCode::kUsage,
-            gotExpected("--turntable",
-                        std::string("it and ") +
-                            (command.picture.camera.asked() ? "--camera" : "--camera-matrix"),
-                        "a camera that options turn"));
+        (choice.asked() || hasPoses || command.picture.render.camera.worldFromCamera)) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("--turntable",
+                                std::string("it and ") + (choice.asked() ? "--camera"
+                                                          : hasPoses     ? "--poses"
+                                                                         : "--camera-matrix"),
+                                "a camera that options turn"));
     }
-    if (command.turntable && !command.frames.asked()) {
-        command.frames.askedBy = "--turntable";
-        command.frames.frames.resize(std::size_t(*command.turntable));
-        std::iota(command.frames.frames.begin(), command.frames.frames.end(), 1);
-    }
+    if (command.turntable && !command.frames.asked())
+        useFrames("--turntable", std::size_t(*command.turntable), command.frames);
+    if (hasPoses && !command.frames.asked())
+        useFrames("--poses", readPoses(choice.posesFile).size(), command.frames);
     requireFramesOf(app, command.frames, command.input, command.output);
     if (!command.frames.asked()) {
         if (command.firstPass.empty() || command.slabs) return;

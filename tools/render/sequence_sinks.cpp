@@ -56,6 +56,8 @@ void checkMovieOf(const CLI::App& app, RenderCommand& command) {
     if (command.isMovieAlone) command.output = command.movie;
     if (isExr(command))
         refuse("--movie", "an .exr besides, which shows light as it is", "-o with a .png, or none");
+    if (storesValues(command))
+        refuse("--movie", "numbers besides, which no movie shows", "-o with a .png, or none");
     if (!command.isMovieAlone) return;
     for (const char* option : {"--float", "--bits", "--progressive", "--region"})
         if (isGiven(app, option)) refuse(option, "a movie alone", "-o with pictures");
@@ -91,7 +93,7 @@ void applySinks(const CLI::App& app, RenderCommand& command, std::size_t picture
         refuse("--fps", "it without --movie", "a movie to make");
     if (command.contactSheet && !command.movie.empty())
         refuse("--contact-sheet", "--movie besides", "one of them");
-    if (command.slate && isExr(command)) {
+    if (command.slate && (isExr(command) || storesValues(command))) {
         refuse("--slate", command.output.string() + ", whose pixels are light or values alone",
                "a .png (render to both)");
     }

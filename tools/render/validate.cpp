@@ -18,6 +18,7 @@
 #include "render/ground_options.h"
 #include "render/preview.h"
 #include "render/preview_file.h"
+#include "render/render_modes.h"
 
 namespace deltasplat {
 namespace {
@@ -57,6 +58,7 @@ void validateOptions(const RenderCommand& command) {
     checkGround(command);
     checkPreview(command);
     if (!command.isMovieAlone && !command.slabs) imageFormatOf(command.output);
+    checkNumbers(command);
     checkCamera(command.picture.render.camera);
     checkAnnotations(command);
 }

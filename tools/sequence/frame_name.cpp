@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cstdio>
 
+#include "ingest/files/input_files.h"
 #include "ingest/files/input_kind.h"
 
 namespace deltasplat {
@@ -114,6 +115,13 @@ std::filesystem::path FrameName::at(int frame) const {
     std::string text;
     for (const Place& place : places_) text += place.before + numberText(frame, place.digits);
     return text + after_;
+}
+
+std::filesystem::path FrameName::inputAt(int frame) const {
+    std::filesystem::path file = at(frame);
+    const auto folder = std::filesystem::path(places_.front().before + "#").parent_path();
+    if (file.parent_path() != folder) requireFoundIn(folder, file);
+    return file;
 }
 
 }  // namespace deltasplat

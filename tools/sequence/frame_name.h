@@ -20,6 +20,10 @@ class FrameName {
 
     /// Returns the file of a frame. Signs count as a digit, as in printf: -5 in #### is -005.
     std::filesystem::path at(int frame) const;
+    /// The same of a file that is read: where inputs are confined, links in names with such a place
+    /// lead nowhere else.
+    /// @throw Error(kInput) as requireFoundIn
+    std::filesystem::path inputAt(int frame) const;
 
   private:
     struct Place {

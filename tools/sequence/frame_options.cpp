@@ -88,7 +88,7 @@ std::vector<FrameFiles> inputsOfFrames(const FrameChoice& choice, const std::str
     const std::optional<FrameName> name = FrameName::findInput(input);
     if (!name) refuseName(choice, option, input);
     std::vector<FrameFiles> files;
-    for (const int frame : choice.frames) files.push_back({frame, name->at(frame), {}});
+    for (const int frame : choice.frames) files.push_back({frame, name->inputAt(frame), {}});
     return files;
 }
 
@@ -101,7 +101,8 @@ std::vector<FrameFiles> filesOfFrames(const FrameChoice& choice, const std::file
     std::vector<FrameFiles> files;
     std::map<std::filesystem::path, int> outputs;
     for (const int frame : choice.frames) {
-        files.push_back({frame, inputName ? inputName->at(frame) : input, outputName.at(frame)});
+        files.push_back(
+            {frame, inputName ? inputName->inputAt(frame) : input, outputName.at(frame)});
         const auto [known, isNew] = outputs.emplace(files.back().output, frame);
         if (isNew) continue;
         throw Error(ErrorCode::kUsage,

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <string>
 
 #include "deltasplat/ingest/volume.h"
@@ -14,8 +15,13 @@ namespace deltasplat {
 struct CompareOptions {
     double fail = 0;  ///< data units, at least 0: larger errors count in VolumeComparison::overFail
     double warn = 0;  ///< data units, at least 0: larger errors count in VolumeComparison::overWarn
-    double shift = 1e-6;  ///< voxels, at least 0: the largest shift that is rounding only, also
-                          ///< from a whole number of voxels
+    /// Voxels, at least 0: the largest shift that is rounding only, also from a whole number of
+    /// voxels. What the coarser of the two transforms cannot hold is rounding anyway.
+    double shift = 1e-6;
+    /// Binary digits of the numbers of which each transform is made: in formats that hold them as
+    /// 32-bit floats, 24.
+    int placeDigitsA = std::numeric_limits<double>::digits;
+    int placeDigitsB = std::numeric_limits<double>::digits;
 };
 
 /// How two volumes differ. A voxel's error is |value in A - value in B|, in data units.
@@ -47,12 +53,14 @@ struct VolumeComparison {
     /// holds both, `offset` taken into account, in units of the smallest voxel size.
     double shift = 0;
 
-    bool transformEqual = true;  ///< `shift` is at most CompareOptions::shift
-    bool sizeEqual = true;       ///< boxes are equal, `offset` taken into account; always true
-                                 ///< unless both volumes are dense
-    bool typeEqual = true;       ///< value types have the same name
-    bool classEqual = true;      ///< grid classes have the same name
-    bool nameEqual = true;       ///< grids have the same name
+    /// `shift` is at most CompareOptions::shift, or no number of either transform differs by more
+    /// than half a unit of the last digit of the coarser one.
+    bool transformEqual = true;
+    bool sizeEqual = true;   ///< boxes are equal, `offset` taken into account; always true
+                             ///< unless both volumes are dense
+    bool typeEqual = true;   ///< value types have the same name
+    bool classEqual = true;  ///< grid classes have the same name
+    bool nameEqual = true;   ///< grids have the same name
 
     /// Whether everything but the names of types, classes and grids agrees: every value, active
     /// state, background, size and place.
@@ -64,13 +72,13 @@ struct VolumeComparison {
 
 /// Compares two volumes voxel by voxel: those of the same indices, or if their transforms differ by
 /// whole voxels, as those of a .vdb and of a dense file made from it do, those at the same place in
-/// the world (B is then copied). Where a volume has `source`, its own values are taken, inactive
-/// ones included, otherwise those that its codes stand for (inactive voxels then hold the
-/// background). Tiles are compared as tiles, so that nothing depends on the extent of a box.
-/// Differences of 64-bit integers are exact before they become a double. Infinities and NaN, which
-/// only inactive voxels can hold, equal themselves; any other difference that is no finite number
-/// counts as the largest double. 0 equals -0. If both volumes name their patient's coordinate
-/// system, they are compared in one.
+/// the world, or within half a voxel of it (B is then copied). Where a volume has `source`, its own
+/// values are taken, inactive ones included, otherwise those that its codes stand for (inactive
+/// voxels then hold the background). Tiles are compared as tiles, so that nothing depends on the
+/// extent of a box. Differences of 64-bit integers are exact before they become a double.
+/// Infinities and NaN, which only inactive voxels can hold, equal themselves; any other difference
+/// that is no finite number counts as the largest double. 0 equals -0. If both volumes name their
+/// patient's coordinate system, they are compared in one.
 ///
 /// The result is the same to the last bit for any number of threads.
 /// @throw whatever `listener.progress` throws

@@ -25,7 +25,14 @@ struct ImageChannel {
 /// How a picture is stored. No clock time goes into a file: the same picture gives the same bytes.
 struct ImageFileOptions {
     bool floatExr = false;  ///< .exr: 32-bit float instead of half; not for others
-    int bits = 8;           ///< .png, .tif: 8 or 16 a channel; .jpg: 8; without effect on .exr
+    /// .npy, .nrrd and .mha, which hold no other pictures, and .tif: the picture is one of numbers,
+    /// of which the first channel is stored, as 32-bit floats.
+    bool numbers = false;
+    float nothing = 0;  ///< of `numbers`: what is stored where alpha is 0; 0: the number
+    /// .nrrd, .mha: maps the centre of a pixel, (column, row, 0), to its place in the world.
+    std::optional<glm::dmat4> worldFromPixel;
+    std::string space;  ///< of that world, as Volume::space
+    int bits = 8;       ///< .png, .tif: 8 or 16 a channel; .jpg: 8; without effect on .exr
     /// 8 bits: rounds up and down in a fixed pattern, so that slow ramps show no steps.
     bool dither = true;
     std::optional<glm::dmat4>
@@ -41,10 +48,10 @@ struct ImageFileOptions {
     std::optional<PixelBox> region;  ///< what is stored of the picture; empty: all
 };
 
-enum class ImageFormat { kExr, kPng, kTiff, kJpeg };
+enum class ImageFormat { kExr, kPng, kTiff, kJpeg, kNpy, kNrrd, kMetaImage };
 
 /// Returns the format of a file name, by its extension in any case: .exr, .png, .tif or .tiff, .jpg
-/// or .jpeg.
+/// or .jpeg, and of numbers .npy, .nrrd or .mha.
 /// @throw Error(kUsage) for others
 ImageFormat imageFormatOf(const std::filesystem::path& file);
 
@@ -60,6 +67,9 @@ inline constexpr int kMaxJpegSide = 65500;
 ///        Error(kOutput) if the folder does not exist or cannot be written to
 void checkImageFile(const std::filesystem::path& file, glm::ivec2 sizePixels,
                     const ImageFileOptions& options);
+
+/// Returns whether a format holds pictures of numbers alone.
+bool isOfNumbers(ImageFormat format);
 
 /// Writes `.exr` (scene-linear, premultiplied), `.png` or `.tif` (sRGB, straight
 /// alpha, rounded to nearest, or dithered; clear where alpha is 0) or `.jpg` (sRGB, over black,

@@ -128,13 +128,40 @@ bool ColumnDecoder::decode(const DeltaColumn& column, const glm::ivec2& range,
             block = next - 1;
             continue;
         }
-        const BlockDeltas* const deltas = changes ? walker_->take() : nullptr;
-        if (changes && !deltas) return false;
         const glm::ivec3 position(block, column.place);
-        if (!decodeBlock(position, deltas, blocks)) return false;
-        isZero = changes ? isConstant() && slots_[0] == 0 : isZero;
+        if (!changes) {
+            int end = std::min(next, range.y + 1);
+            if (!isZero) end = std::min(end, grid_.layout.endOfSlab(block));
+            if (!decodeAlike(position, end, blocks)) return false;
+            block = end - 1;
+            continue;
+        }
+        const BlockDeltas* const deltas = walker_->take();
+        if (!deltas || !decodeBlock(position, deltas, blocks)) return false;
+        isZero = isConstant() && slots_[0] == 0;
     }
     return walker_->block() == DeltaWalker::kNoBlock || !grid_.layout.isWhole();
+}
+
+// Adds blocks without deltas, up to one, of which each shows what the one before it does. Where the
+// first is left out, all are, however many there are.
+bool ColumnDecoder::decodeAlike(glm::ivec3 position, int end, std::vector<SlotBlock>& blocks) {
+    const BlockLayout& layout = grid_.layout;
+    position.x = std::max(position.x, std::min(layout.keptFirst, end));
+    while (position.x < end) {
+        const std::size_t before = blocks.size();
+        const std::uint64_t activeBefore = activeCount_;
+        if (!decodeBlock(position, nullptr, blocks)) return false;
+        const bool isWhole = layout.hasSlice(8 * position.x) && layout.hasSlice(8 * position.x + 7);
+        ++position.x;
+        if (blocks.size() > before || !isWhole) continue;
+        // Of the last, slices may be missing.
+        const int alike = std::max(end - 1 - position.x, 0);
+        activeCount_ += std::uint64_t(alike) * (activeCount_ - activeBefore);
+        if (activeCount_ > grid_.header.active) return false;
+        position.x += alike;
+    }
+    return true;
 }
 
 bool ColumnDecoder::decodeBlock(const glm::ivec3& position, const BlockDeltas* deltas,

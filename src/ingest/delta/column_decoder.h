@@ -33,6 +33,8 @@ class BlockLayout {
     int slabs() const { return slabOf(lastBlock.x) + 1; }
     int slabOf(int block) const { return (block - firstBlock.x) / blocksPerSlab; }
     bool startsSlab(int block) const { return (block - firstBlock.x) % blocksPerSlab == 0; }
+    /// Returns the first block behind the slab of one.
+    int endOfSlab(int block) const { return blocksOf(slabOf(block)).y + 1; }
     /// Returns the first and the last block of a slab.
     glm::ivec2 blocksOf(int slab) const;
     /// Whether all of a slab is read.
@@ -114,6 +116,7 @@ class ColumnDecoder {
     ShortSlot shown(std::uint32_t slot) const;
     bool decodeBlock(const glm::ivec3& position, const BlockDeltas* deltas,
                      std::vector<SlotBlock>& blocks);
+    bool decodeAlike(glm::ivec3 position, int end, std::vector<SlotBlock>& blocks);
     bool addBlock(const glm::ivec3& position, const BlockDeltas& deltas, ShortSlot* out);
     bool writeSlice(const glm::ivec3& position, int s, ShortSlot* out) const;
     ShortSlot* room();

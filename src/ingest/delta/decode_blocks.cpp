@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "box_voxels.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 #include "ingest/codes/code_counts.h"
@@ -181,7 +182,7 @@ bool mayBeSound(const DeltaColumns& deltas, const DeltaHeader& header, const Blo
     const auto isInside = [&](const DeltaColumn& column) { return layout.hasColumn(column.place); };
     return layout.keptFirst <= layout.keptLast &&
            header.slabDeltas.size() == std::size_t(layout.slabs()) &&
-           (!header.restActive || std::uint64_t(header.box.voxels()) == header.active) &&
+           (!header.restActive || voxelsOf(header.box) == header.active) &&
            (!header.restActive || layout.canListRest(deltas.blocks())) &&
            rules.lowest <= rules.highest &&
            std::all_of(deltas.columns().begin(), deltas.columns().end(), isInside);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "box_voxels.h"
 #include "deltasplat/error.h"
 #include "ingest/codes/leaf_slices.h"
 #include "ingest/delta/exact_slots.h"
@@ -379,7 +380,7 @@ void fillRest(const DeltaHeader& header, typename Tree::ValueType rest, const st
     const glm::dvec3 dims(header.box.dims());
     const double faces = 2 * (dims.x * dims.y + dims.y * dims.z + dims.z * dims.x);
     requireClaimedMemory(where, faces / 64 * leafBytes<typename Tree::LeafNodeType>() +
-                                    double(header.box.voxels()) / 0x1p36 * 100);
+                                    double(voxelsOf(header.box)) / 0x1p36 * 100);
     tree.fill({{low.x, low.y, low.z}, {high.x, high.y, high.z}}, rest, true);
 }
 
@@ -397,7 +398,7 @@ void decode(typename Words::DeltaTree& deltas, const DeltaHeader& header, const 
 
     // Without empty places all voxels of the box are active, before any of them takes memory.
     if (header.restActive && header.inactiveValues.empty())
-        requireActiveCount(std::uint64_t(header.box.voxels()), header, where);
+        requireActiveCount(voxelsOf(header.box), header, where);
     if (header.restActive && !header.box.empty()) fillRest(header, words.rest(), where, values);
     const std::vector<std::size_t> columns = columnsOf(leaves, decoder);
     Collector<Words> collector(header, words, where, values, inactive);

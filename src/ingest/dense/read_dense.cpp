@@ -17,6 +17,7 @@
 #include "ingest/dense/codes_on_demand.h"
 #include "ingest/dense/dense_source.h"
 #include "ingest/dense/dense_tree_builder.h"
+#include "ingest/dense/dense_unsigned.h"
 #include "ingest/dense/mixed_blocks.h"
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_values.h"
@@ -285,9 +286,11 @@ std::shared_ptr<Tree> readTree(const DenseSource& source, std::optional<double> 
     return tree;
 }
 
+// @param keepUnsigned  whether uint64 becomes int64 of the same bits
 std::shared_ptr<openvdb::TreeBase> readSourceTree(const DenseSource& source,
                                                   std::optional<double> nonFinite,
-                                                  const Listener& listener) {
+                                                  bool keepUnsigned, const Listener& listener) {
+    if (keepUnsigned) return readTree<openvdb::Int64Tree>(source, nonFinite, listener);
     switch (source.type) {
         case RawType::kFloat32:
             return readTree<openvdb::FloatTree>(source, nonFinite, listener);
@@ -303,9 +306,11 @@ std::shared_ptr<openvdb::TreeBase> readSourceTree(const DenseSource& source,
 }
 
 TreeGrid readSourceGrid(const DenseSource& source, std::optional<double> nonFinite,
-                        const Listener& listener) {
-    TreeGrid grid{
-        readSourceTree(source, nonFinite, listener), {}, makeMapIfAny(source.worldFromIndex)};
+                        bool keepUnsigned, const Listener& listener) {
+    TreeGrid grid{readSourceTree(source, nonFinite, keepUnsigned, listener),
+                  {},
+                  makeMapIfAny(source.worldFromIndex)};
+    if (keepUnsigned) grid.metadata.insert(kSourceTypeKey, rawTypeName(source.type));
     grid.metadata.insert(openvdb::GridBase::META_GRID_NAME, source.name);
     return grid;
 }
@@ -365,15 +370,18 @@ void requireLimit(const DenseSource& source, const ReadOptions& options, bool ke
     requireMemory(source.where, double(countMixedBlocks(source, stopping)) * bytesPerBlock);
 }
 
-}  // namespace
-
-Volume readDense(const DenseSource& source, const ReadOptions& options, const Listener& listener) {
+// @param mayKeepUnsigned  as readDenseUnsigned
+Volume read(const DenseSource& source, const ReadOptions& options, bool mayKeepUnsigned,
+            const Listener& listener) {
     const double scanned = needsScan(source.type) ? 0.5 : 0.0;
     Volume volume;
     volume.codeBook = fixedBook(source.type);
     Survey survey;
     if (needsScan(source.type))
         survey = chooseBook(source, options, partOf(listener, 0, scanned), volume);
+    const bool keepUnsigned = mayKeepUnsigned && options.keepSource &&
+                              source.type == RawType::kUint64 && !volume.codeBook.isExact();
+    if (keepUnsigned) volume.readError = 0;
     warnOfChanges(source, options, volume, listener);
     const bool keep = (options.keepSource || options.keepInexact) && !volume.codeBook.isExact();
     const bool later = readsLater(source, options);
@@ -392,8 +400,8 @@ Volume readDense(const DenseSource& source, const ReadOptions& options, const Li
         readCodes(source, options, survey, partOf(listener, scanned, coded), volume);
     }
     if (keep) {
-        volume.source = std::make_shared<const SourceGrid>(SourceGrid{
-            readSourceGrid(source, options.nanValue.value_or(0), partOf(listener, coded, 1))});
+        volume.source = std::make_shared<const SourceGrid>(SourceGrid{readSourceGrid(
+            source, options.nanValue.value_or(0), keepUnsigned, partOf(listener, coded, 1))});
     }
 
     volume.name = source.name;
@@ -407,6 +415,17 @@ Volume readDense(const DenseSource& source, const ReadOptions& options, const Li
     return volume;
 }
 
+}  // namespace
+
+Volume readDense(const DenseSource& source, const ReadOptions& options, const Listener& listener) {
+    return read(source, options, false, listener);
+}
+
+Volume readDenseUnsigned(const DenseSource& source, const ReadOptions& options,
+                         const Listener& listener) {
+    return read(source, options, true, listener);
+}
+
 Volume readSparse(const DenseSource& source, double background, const ReadOptions& options,
                   const Listener& listener) {
     constexpr double kReadShare = 0.5;
@@ -414,7 +433,7 @@ Volume readSparse(const DenseSource& source, double background, const ReadOption
     double readError = 0;
     if (source.type == RawType::kUint64)
         readError = scan(source, options, partOf(listener, 0, 0.1)).census.rounding;
-    TreeGrid grid = readSourceGrid(source, {}, partOf(listener, 0.1, kReadShare));
+    TreeGrid grid = readSourceGrid(source, {}, false, partOf(listener, 0.1, kReadShare));
     if (!source.space.empty()) grid.metadata.insert(kSpaceKey, source.space);
     if (!source.lengthUnit.empty()) grid.metadata.insert(kLengthUnitKey, source.lengthUnit);
     if (source.labels) grid.metadata.insert(kLabelsKey, labelText(*source.labels));

@@ -69,17 +69,28 @@ bool inputsAreConfined() {
 
 namespace {
 
-void requireInFolderOf(const std::filesystem::path& input,
-                       const std::vector<std::filesystem::path>& files) {
-    namespace fs = std::filesystem;
+namespace fs = std::filesystem;
+
+// The folder of an input, or the one that it is.
+fs::path folderOf(const fs::path& input) {
     std::error_code error;
     const fs::path near = fs::is_directory(input, error) ? input : input.parent_path();
-    const fs::path folder = fs::canonical(fs::absolute(near.empty() ? "." : near), error);
+    return near.empty() ? "." : near;
+}
+
+// What is not there at all is for its reader to say.
+bool isWithin(const fs::path& folder, const fs::path& file) {
+    std::error_code error;
+    const fs::path around = fs::canonical(fs::absolute(folder), error);
+    const fs::path real = fs::weakly_canonical(fs::absolute(file), error);
+    const auto parted = std::mismatch(around.begin(), around.end(), real.begin(), real.end());
+    return !error && !around.empty() && parted.first == around.end();
+}
+
+void requireInFolderOf(const fs::path& input, const std::vector<fs::path>& files) {
+    const fs::path folder = folderOf(input);
     for (const fs::path& file : files) {
-        // What is not there at all is for its reader to say.
-        const fs::path real = fs::weakly_canonical(fs::absolute(file), error);
-        const auto parted = std::mismatch(folder.begin(), folder.end(), real.begin(), real.end());
-        if (!error && !folder.empty() && parted.first == folder.end()) continue;
+        if (isWithin(folder, file)) continue;
         throw Error(ErrorCode::kInput,
                     gotExpected(input.string(),
                                 "the file " + printable(file.string()) + " outside of its folder",
@@ -88,6 +99,15 @@ void requireInFolderOf(const std::filesystem::path& input,
 }
 
 }  // namespace
+
+void requireFoundIn(const std::filesystem::path& folder, const std::filesystem::path& input) {
+    const fs::path base = folder.empty() ? "." : folder;
+    if (!inputsAreConfined() || isWithin(base, folderOf(input))) return;
+    throw Error(ErrorCode::kInput, gotExpected(input.string(),
+                                               "a folder outside of " + printable(base.string()) +
+                                                   ", in which the pattern looks",
+                                               "folders inside of it (`confineInputs`)"));
+}
 
 void requireConfined(const std::filesystem::path& input) {
     requireInFolderOf(input, filesOf(input));

@@ -23,6 +23,11 @@ bool inputsAreConfined();
 /// @throw Error(kInput) "<input>: got <file>, which is outside of <folder>; expected ..."
 void requireConfined(const std::filesystem::path& input);
 
+/// Checks, where inputs are confined at all, that the folder of an input that a pattern stands for
+/// lies, links followed, in the pattern's own: the one before the first folder of any name.
+/// @throw Error(kInput)
+void requireFoundIn(const std::filesystem::path& folder, const std::filesystem::path& input);
+
 /// The same of a file that an input names, where inputs are confined at all.
 void requireConfined(const std::filesystem::path& input, const std::filesystem::path& named);
 

@@ -293,9 +293,9 @@ IndexBox boxOfVoxels(const openvdb::CoordBBox& active, const std::string& where)
         fits = fits && box.min[axis] > -kFarthest && box.max[axis] < kFarthest;
         voxels *= double(box.max[axis]) - box.min[axis] + 1;
     }
-    if (!fits || voxels > 0x1p62) {
+    if (!fits) {
         fail(where, "active voxels spread over " + numberText(voxels) + " places",
-             "indices within 2^30 of 0 and a box of at most 2^62 voxels");
+             "indices within 2^30 of 0");
     }
     return box;
 }

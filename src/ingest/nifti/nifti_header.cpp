@@ -356,6 +356,8 @@ NiftiHeader readNiftiHeader(const std::filesystem::path& file, const Listener& l
     header.volumes = std::int64_t(countVolumes(fields));
     header.dims = dimsText(fields, fields.dim(0));
     place(fields, listener, header);
+    header.placeDigits =
+        fields.second ? std::numeric_limits<double>::digits : std::numeric_limits<float>::digits;
     readUnit(fields, listener, header);
     readRescale(fields, header);
     constexpr int kLabelIntent = 1002;

@@ -21,6 +21,7 @@ struct NiftiHeader {
     std::string dims;                ///< of all axes, for messages: "64x64x36x120"
     Rescale rescale;
     glm::dmat4 worldFromIndex{1.0};
+    int placeDigits = 0;     ///< as placeDigitsOf
     bool isLabels = false;   ///< intent NIFTI_INTENT_LABEL: values are numbers of names
     std::string space;       ///< "RAS", or empty if the header places the voxels nowhere
     std::string lengthUnit;  ///< as Volume::lengthUnit

@@ -3,6 +3,7 @@
 
 #include "ingest/delta/delta_format.h"
 #include "ingest/files/file_name.h"
+#include "ingest/files/input_files.h"
 #include "ingest/vdb/default_grid.h"
 #include "ingest/vdb/vdb_file.h"
 
@@ -10,6 +11,7 @@ namespace deltasplat {
 
 GridList listGrids(const std::filesystem::path& file) {
     requireRegularFile(file);
+    if (inputsAreConfined()) requireConfined(file);
     GridList list;
     const VdbFile vdb(file);
     if (const VdbGrid* const preferred = defaultGrid(vdb)) list.preferred = preferred->name;

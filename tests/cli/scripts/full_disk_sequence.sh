@@ -52,3 +52,16 @@ expect_whole 40 60
 mount -o remount,size=16m none disk
 "$program" "${frames[@]}" -o disk/turn.####.exr --skip-existing
 expect_whole 100 100
+
+# A batch says each failure once.
+mkdir shots
+for i in 1 2 3; do cp cloud.vdb shots/$i.vdb; done
+umount disk
+mount -t tmpfs -o size=8k none disk
+expect_code 4 "$program" render 'shots/*.vdb' -o 'disk/{name}.exr' --size 48x48 --compression none \
+    --index disk/index.html -q
+[[ $(grep -c '^deltasplat: disk/[123].exr: cannot be written: No space left on device$' stderr.txt) == 3 &&
+    $(wc -l <stderr.txt) == 5 ]] || fail "got $(cat stderr.txt)"
+[[ $(tail -n 1 stderr.txt) == "deltasplat: 3 of 3 pictures failed: shots/1.vdb, shots/2.vdb, shots/3.vdb" ]] ||
+    fail "got $(tail -n 1 stderr.txt)"
+expect_files "" 'disk/*'

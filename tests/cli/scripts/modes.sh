@@ -118,3 +118,60 @@ expect_metadata drr.exr photons 1e+06
 "$program" render "${thin[@]}" -o drr.png --drr --background 1,0,0
 expect_pixel drr.png 1 1 "0.000000 0.000000 0.000000 1.000000"
 expect_pixel drr.png 16 16 "1.000000 1.000000 1.000000 1.000000"
+
+# Numbers, one for each pixel: those of the .exr, row by row; nothing is no number.
+numbers() { od -An -v -tf4 -w4 -j"$2" "$1" | tr -d ' '; } # FILE BYTES-BEFORE
+at() { numbers "$1" "$2" | sed -n "$((16 * $4 + $3 + 1))p"; }  # FILE BYTES-BEFORE X Y
+for name in npy nrrd mha tif; do render mip.$name --mode mip --float; done
+[[ $(at mip.npy 128 8 8) == 255 && $(at mip.npy 128 2 8) == 0 && $(at mip.npy 128 0 8) == *nan* ]] ||
+    fail "mip.npy holds other numbers"
+for name in nrrd mha; do
+    before=$(($(stat -c %s mip.$name) - 16 * 16 * 4))
+    cmp <(tail -c +129 mip.npy) <(tail -c +$((before + 1)) mip.$name) || fail "mip.$name holds other numbers"
+done
+grep -aq '^sizes: 16 16 1$' mip.nrrd || fail "mip.nrrd has another size"
+expect_pixel mip.tif 8 8 "255.000000"
+render xray.npy --mode xray
+[[ $(at xray.npy 128 0 0) == 0 ]] || fail "xray.npy: got $(at xray.npy 128 0 0) beside the volume; expected 0"
+"$program" render "${thin[@]}" -o drr.npy --mode drr --mu-water 0.02 --photons 1e6
+[[ $(numbers drr.npy 128 | sed -n "$((32 * 16 + 17))p") == 644036.4* ]] || fail "drr.npy holds other numbers"
+expect_code 2 "$program" render "$slab" -o light.npy
+expect_said "deltasplat: --output: got light.npy with --mode composite; expected a mode of numbers: xray, mip, min, average or drr"
+expect_code 2 "$program" render "$slab" -o light.tif --float
+expect_said "deltasplat: --float: got light.tif; expected an .exr file"
+expect_code 2 "$program" render "$slab" -o all.nrrd --mode mip --projection latlong
+expect_said "deltasplat: --output: got all.nrrd with --projection latlong; expected a flat picture, or .npy"
+expect_code 2 "$program" render "$slab" -o axes.npy --mode mip --axes
+expect_files "" '{light,all,axes}.*'
+
+# A C-arm: what one voxel casts falls where the formula of docs/cameras.md has it, in each frame.
+{ for i in {0..26}; do ((i == 13)) && printf '\x01' || printf '\x00'; done; } >ball_3x3x3_uint8.raw
+cat >poses.csv <<'END'
+primary,secondary,sid,sdd,pixel
+0,0,1000,1500,1.5
+90,0,1000,1500,1.5
+0,-90,1000,1200,1.2
+END
+# The voxel lies 3.5 mm to the patient's left (x), 5.5 to the head (y) and 8.5 to the front (z).
+arm=(ball_3x3x3_uint8.raw -qq --origin 2.5,4.5,7.5 --target 0,0,0 --size 64x48 --mode mip)
+"$program" render "${arm[@]}" --poses poses.csv -o arm.#.npy
+expect_files "arm.1.npy arm.2.npy arm.3.npy" 'arm.*'
+brightest() { # FILE WIDTH
+    numbers "$1" 128 | awk -v w="$2" '$1 !~ /nan/ && $1 > most { most = $1; n = NR - 1 } END { print n % w, int(n / w) }'
+}
+# From behind 32 - 3.5 * 1000 / 1008.5 and 24 - 5.5 * 1000 / 1008.5; from the right 32 + 8.5 * 1000 /
+# 1003.5 and 24 - 5.5 * 1000 / 1003.5; from the head 32 - 3.5 * 1000 / 994.5 and 24 - 8.5 * 1000 / 994.5.
+expected=("28 18" "40 18" "28 15")
+for frame in 1 2 3; do
+    got=$(brightest arm.$frame.npy 64)
+    [[ $got == "${expected[frame - 1]}" ]] || fail "arm.$frame.npy: got the voxel at $got; expected ${expected[frame - 1]}"
+done
+"$program" render "${arm[@]}" --view back --sid 1000 --sdd 1500 --detector 96x72 -o arm.npy
+cmp arm.npy arm.1.npy || fail "a pose is another picture than the options that it stands for"
+"$program" render "${arm[@]}" --poses poses.csv -o arm.#.mha --frames 2
+grep -aq '^ElementSpacing = 1.5 1.5 1.5$' arm.2.mha || fail "arm.2.mha has other pixels than the detector"
+expect_code 2 "$program" render "${arm[@]}" --poses poses.csv -o arm.#.npy --frames 3-4
+expect_said "deltasplat: --frames: got 4; expected 1 to 3, a line of --poses for each"
+expect_code 2 "$program" render "${arm[@]}" --poses poses.csv -o arm.#.npy --sid 3
+expect_said "deltasplat: --sid: got it and --poses; expected the camera one way or the other"
+expect_code 3 "$program" render "${arm[@]}" --poses hu_16x16x8_int16.raw -o arm.#.npy

@@ -62,3 +62,17 @@ for module in images exr; do
         stderr.txt || { cat stderr.txt; fail "$module: expected to be told of the other version"; }
 done
 expect_files "" 'none*'
+
+# Nor one under the name of another, be it one of functions or of a library.
+cp installed/lib/deltasplat/exr.so lonely/lib/deltasplat/images.so
+cp installed/lib/deltasplat/images.so lonely/lib/deltasplat/exr.so
+cp installed/lib/deltasplat/blosc.so lonely/lib/deltasplat/openvdb.so
+expect_other() { # MODULE OTHER COMMAND
+    expect_code 1 lonely/bin/deltasplat "${@:3}"
+    grep -q "^deltasplat: module $1: got .*/$1.so of \"deltasplat module [0-9.]* $2\"; expected \"deltasplat module [0-9.]* $1\", installed with" \
+        stderr.txt || { cat stderr.txt; fail "$1: expected to be told that it is $2"; }
+}
+expect_other images exr render in.vdb -o none.jpg --size 32x32 -q --background 0,0,0
+expect_other exr images render in.vdb -o none.exr --size 32x32 -q
+expect_other openvdb blosc info frustum.vdb
+expect_files "" 'none*'

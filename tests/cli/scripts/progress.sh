@@ -73,6 +73,25 @@ for arguments in "--log no/folder.log" "--json-log" "--log kept.vdb"; do
     grep -q "^deltasplat: ${arguments%% *}: got " said || { cat said; exit 1; }
 done
 [[ ! -e other.exr ]]
+# Another user's link in a folder that all may write says no more than that of another output does.
+mkdir shared
+chmod 1777 shared
+ln -s ../victim.log shared/own.log
+"$program" render "$fixtures/two.vdb" -o out.exr --size 8x8 -qq --log shared/own.log
+[[ -s victim.log ]]
+rm victim.log
+if [[ $EUID == 0 ]]; then
+    for target in victim.log run.log; do
+        ln -sf ../$target shared/other.log
+        chown -h 12345 shared/other.log
+        before=$(cat run.log)
+        code=0
+        "$program" render "$fixtures/two.vdb" -o other.exr -qq --log shared/other.log 2>said || code=$?
+        [[ $code == 4 ]] || { echo "got exit code $code; expected 4"; exit 1; }
+        grep -q '^deltasplat: --log: got shared/other.log: cannot be written: ' said || { cat said; exit 1; }
+        [[ ! -e victim.log && $(cat run.log) == "$before" && ! -e other.exr ]]
+    done
+fi
 ! "$program" synth slab run.log --dims 4x4x4 -qq --log run.log 2>said || exit 1
 grep -qx 'deltasplat: OUTPUT: got run.log; expected another file than --log' said || { cat said; exit 1; }
 cmp kept.vdb "$fixtures/two.vdb"

@@ -90,3 +90,17 @@ sed 's|@in|@../in|g' scene.usda >elsewhere/scene.usda
 expect_code 0 "$program" render elsewhere/scene.usda -o a.exr -qq --size 8x8
 expect_code 3 "$program" render elsewhere/scene.usda -o a.exr -qq --size 8x8 --confine
 grep -q "in.1.vdb outside of its folder" stderr.txt || fail "the scene is not confined"
+# What is looked at is what is opened, whatever links are on the way: "link/.." is no folder's parent
+# to USD, which takes names apart by their text.
+mkdir -p up/sub/deep
+cp in.1.vdb outside.vdb
+cp in.1.vdb up/inside.vdb
+ln -s sub/deep up/link
+sed 's|@in.*vdb@|@link/../../outside.vdb@|' scene.usda >up/out.usda
+grep -q '@link/../../outside.vdb@' up/out.usda || fail "up/out.usda does not lead out"
+expect_code 0 "$program" render up/out.usda -o a.exr -qq --size 8x8
+expect_code 3 "$program" render up/out.usda -o b.exr -qq --size 8x8 --confine
+grep -q "outside.vdb outside of its folder" stderr.txt || fail "a scene is confined no longer behind a link"
+[[ ! -e b.exr ]] || fail "b.exr shows what is outside"
+sed 's|@in.*vdb@|@link/../inside.vdb@|' scene.usda >up/in.usda
+expect_code 0 "$program" render up/in.usda -o a.exr -qq --size 8x8 --confine

@@ -161,6 +161,30 @@ expect_code 0 "$program" render in.####.vdb --size 48x48 --frames 8-10 --first-p
 expect_said "deltasplat: warning: --first-pass: few.json was made without frame 10, and is taken as it is"
 expect_code 0 "$program" render in.####.vdb --size 48x48 --frames 8-9 --first-pass few.json -o few.####.exr --crop 0:5,:,:
 expect_said 'deltasplat: warning: --first-pass: few.json was made with no options that choose what is read, and is taken as it is for "--crop 0:5,:,:"'
+# Files of it that others have written are read with care.
+few=(render in.####.vdb --size 8x8 --frames 8-9 -o few.####.exr --first-pass)
+printf '{"deltasplat_first_pass":%s}' "$(printf '[%.0s' {1..200000}; printf ']%.0s' {1..200000})" >deep.json
+expect_code 3 "$program" "${few[@]}" deep.json
+expect_said "deltasplat: deep.json: got JSON of more than 32 levels; expected what --first-pass has written"
+mkfifo pipe.json
+expect_code 3 timeout 60 "$program" "${few[@]}" pipe.json
+expect_said "deltasplat: pipe.json: got no regular file; expected a readable file"
+{ printf '{"deltasplat_first_pass":['; head -c 4000000 /dev/zero | sed 's/\x0/1,/g'; printf '1]}'; } >wide.json
+expect_code 1 "$program" "${few[@]}" wide.json --max-memory 200M
+grep -q '^deltasplat: wide.json: needs .* of memory; expected at most .*, which --max-memory leaves' stderr.txt ||
+    { cat stderr.txt; fail "wide.json is read without asking for memory"; }
+
+# Where the number stands in a folder's name, links of such folders lead out of none.
+mkdir -p up secret
+cp in.0008.vdb secret/x.vdb
+mkdir up/0009
+cp in.0009.vdb up/0009/x.vdb
+ln -s ../secret up/0008
+expect_code 0 "$program" info 'up/####/x.vdb' --frames 8-9
+expect_code 3 "$program" info 'up/####/x.vdb' --frames 8-9 --confine
+expect_said "deltasplat: up/0008/x.vdb: got a folder outside of up, in which the pattern looks; expected folders inside of it (--confine)"
+expect_code 0 "$program" info 'up/####/x.vdb' --frames 9 --confine
+
 "$program" render in.####.vdb --size 48x48 -qq --frames 8-9 --first-pass made/here/few.json
 [[ -s made/here/few.json ]] || fail "--first-pass: got no folder for it"
 cp in.0008.vdb other.0008.vdb
@@ -389,7 +413,7 @@ usage "--frames: got 1-5x0; expected frames such as 1-100, 1-100x2, 100-1, -5--1
     in.####.vdb -o g.####.png --frames 1-5x0
 usage "--frames: got 1-9999999; expected at most 1000000 frames" \
     in.####.vdb -o g.####.png --frames 1-9999999
-usage 'g.####.foo: got extension ".foo"; expected .exr, .png, .tif or .jpg' \
+usage 'g.####.foo: got extension ".foo"; expected .exr, .png, .tif or .jpg (numbers: .npy, .nrrd or .mha)' \
     in.####.vdb -o g.####.foo --frames 8-9
 usage "INPUT: got in.0008.vdb with --frames; expected a name with ####, %04d, @ or \$F4 for the number" \
     in.0008.vdb -o g.####.png --frames 8-9

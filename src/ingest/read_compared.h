@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "deltasplat/ingest/read_volume.h"
+
+namespace deltasplat {
+
+/// Reads a volume for compareVolumes alone: as readVolume, but unsigned integers of 64 bits of
+/// which no double holds all stay what they are. Volume::source is then a grid of int64 with their
+/// bits, whose kSourceTypeKey is "uint64".
+Volume readCompared(const std::filesystem::path& file, const ReadOptions& options,
+                    const Listener& listener);
+
+/// Returns how many binary digits the numbers have in which a file says where its voxels lie: those
+/// of a double but in formats of 32-bit floats.
+int placeDigitsOf(const std::filesystem::path& file);
+
+}  // namespace deltasplat

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "rays/ray_volume.h"
+#include "rays/sight_ray.h"
+
+namespace deltasplat {
+
+/// Positions of axes: (slice, u, v).
+struct PatchBox {
+    glm::ivec3 first{0};
+    glm::ivec3 size{0};
+};
+
+/// Reads parts of a volume, in the order and the directions of lines of sight. Made once, to be
+/// used for one patch after the other; not thread-safe.
+class PatchReader {
+  public:
+    PatchReader(const RayVolume& volume, RayRule rule) : volume_(volume), rule_(rule) {}
+
+    /// Whether there is any block in a part.
+    bool find(const RayAxes& axes, const PatchBox& box);
+    /// Reads the part that was looked for, of which what lies outside of the volume is not active.
+    const RayPatch& read(const RayAxes& axes, const PatchBox& box);
+    const RayPatch& patch() const { return patch_; }
+
+  private:
+    void addBlock(const RayAxes& axes, const PatchBox& box, const CodeBlock& block);
+    void findTops(const PatchBox& box);
+
+    const RayVolume& volume_;
+    RayRule rule_;
+    std::vector<const CodeBlock*> found_;
+    std::vector<float> values_;
+    std::vector<float> active_;
+    std::vector<float> rowTops_, sliceTops_, tops_;
+    std::array<float, 512> block_{};
+    std::array<float, 512> blockActive_{};
+    RayPatch patch_{};
+};
+
+}  // namespace deltasplat

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <optional>
+
+#include "rays/sight_ray.h"
+#include "view/picture_rays.h"
+
+namespace deltasplat {
+
+/// A line of sight of a picture.
+struct PictureLine {
+    SightRay ray;
+    double lengthWorld;  ///< of the way from one slice to the next
+    double depthWorld;   ///< likewise, how much deeper it gets
+    double firstDepth;   ///< of the point that the ray was made with
+
+    double depthAt(double slice) const {
+        return firstDepth + depthWorld * ray.slicesFromPoint(slice);
+    }
+};
+
+/// The lines of sight of a picture, of which each pixel has a square of so many.
+class PictureLines {
+  public:
+    /// @param camera  must outlive this
+    PictureLines(const Volume& volume, const Camera& camera, int perSide);
+
+    int perSide() const { return perSide_; }
+    /// Counted from the picture's top left corner, perSide() to a pixel each way.
+    PictureLine at(int x, int y) const;
+
+  private:
+    PictureLine lineOf(const glm::dvec3& through, const glm::dvec3& direction) const;
+
+    const Camera& camera_;
+    int perSide_;
+    IndexBox box_;
+    glm::dmat3 linear_;
+    std::optional<PictureRays> rays_;  // from an eye
+    /// From an eye: that, in voxels from the box's first. Parallel: the first line's place, and
+    /// from one to the next.
+    glm::dvec3 origin_{0.0};
+    glm::dvec3 alongX_{0.0};
+    glm::dvec3 alongY_{0.0};
+    glm::dvec3 direction_{0.0};
+};
+
+/// Returns how many lines of sight a pixel needs along each side: one where pixels are no larger
+/// than voxels in the middle of the volume, else more than there are voxels, kMostPerSide at most.
+int linesPerSide(const Volume& volume, const Camera& camera);
+
+inline constexpr int kMostPerSide = 16;
+
+}  // namespace deltasplat

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rays/ray_follower.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace deltasplat {
+namespace {
+
+// Voxels of a slice that are read at a time, at most.
+constexpr double kMostVoxels = 128 * 128;
+
+constexpr float kNothing = -std::numeric_limits<float>::infinity();
+
+// A slice of a patch where a ray of which only a part is seen meets it.
+struct CutSlice {
+    const RayPatch& patch;
+    const float* values;  // of the slice
+    const PatchBox& box;
+    const SightRay& ray;
+
+    double at(int u, int v) const {
+        u = std::clamp(u - box.first.y, 0, box.size.y - 1);
+        v = std::clamp(v - box.first.z, 0, box.size.z - 1);
+        return double(values[std::ptrdiff_t{u} * patch.sizeV + v]);
+    }
+
+    // What is read `way` behind the place where the slice's neighbour before it is met.
+    double read(double place) const {
+        const glm::dvec2 p = ray.start + place * ray.slope;
+        const glm::dvec2 whole(std::floor(p.x), std::floor(p.y));
+        const glm::dvec2 part = p - whole;
+        const int u = int(std::clamp(whole.x, -1e9, 1e9));
+        const int v = int(std::clamp(whole.y, -1e9, 1e9));
+        const double here = at(u, v) + part.y * (at(u, v + 1) - at(u, v));
+        const double next = at(u + 1, v) + part.y * (at(u + 1, v + 1) - at(u + 1, v));
+        return here + part.x * (next - here);
+    }
+
+    // The integral of the slice's share from a place on: between the planes of voxels it is a
+    // polynomial of the third degree, which two readings of Gauss's rule give exactly.
+    double from(int slice, double place) const {
+        std::vector<double> ends;
+        const double last = slice + 1;
+        const auto addEnd = [&](double end) {
+            if (end > place && end < last) ends.push_back(end);
+        };
+        addEnd(slice);
+        for (int i = 0; i < 2; ++i) {
+            if (!(ray.slope[i] > 0)) continue;
+            const double first = std::floor(ray.start[i] + place * ray.slope[i]) + 1;
+            for (int n = 0; n < 3; ++n) addEnd((first + n - ray.start[i]) / ray.slope[i]);
+        }
+        ends.push_back(last);
+        std::sort(ends.begin(), ends.end());
+        double sum = 0;
+        for (const double end : ends) {
+            const double half = 0.5 * (end - place);
+            const double middle = place + half;
+            for (const double side : {-1.0, 1.0}) {
+                const double at = middle + side * half * std::sqrt(1.0 / 3);
+                sum += half * (1 - std::abs(at - slice)) * read(at);
+            }
+            place = end;
+        }
+        return sum;
+    }
+};
+
+// Returns how far a position lies behind a whole voxel, which is counted from `first`.
+float behindWhole(double position, int first, std::int32_t& whole) {
+    const double below = std::floor(position);
+    whole = std::int32_t(std::clamp(below - first, -1e9, 1e9));
+    return float(position - below);
+}
+
+// The first slice that a ray sees all of, of those that it adds up.
+double firstWhole(const SightRay& ray) {
+    return std::ceil(ray.nearest) + 1;
+}
+
+}  // namespace
+
+void RayFollower::Sums::reset(std::size_t count, float value) {
+    found.assign(count, value);
+    rest.assign(count, 0.0f);
+    met.assign(count, 0.0f);
+}
+
+void RayFollower::Sums::set(std::size_t i, const Sums& other, std::size_t k) {
+    found[i] = other.found[k];
+    rest[i] = other.rest[k];
+    met[i] = other.met[k];
+}
+
+void RayFollower::follow(std::span<const SightRay> rays, std::span<RayFound> found) {
+    std::vector<bool> isDone(rays.size());
+    for (std::size_t first = 0; first < rays.size(); ++first) {
+        if (isDone[first]) continue;
+        axes_ = rays[first].axes;
+        alike_.rays.clear();
+        for (std::size_t i = first; i < rays.size(); ++i) {
+            if (isDone[i] || !(rays[i].axes == axes_)) continue;
+            isDone[i] = true;
+            found[i] = RayFound();
+            if (rays[i].slices.x <= rays[i].slices.y) alike_.rays.push_back(i);
+        }
+        if (!alike_.rays.empty()) followAlike(rays, found);
+    }
+}
+
+// Fills in bundles.
+void RayFollower::gather(std::span<const SightRay> rays) {
+    const std::size_t bundles = (alike_.rays.size() + kRayBundle - 1) / kRayBundle;
+    alike_.rays.resize(bundles * kRayBundle, alike_.rays.back());
+    for (std::vector<double>* values :
+         {&alike_.startU, &alike_.startV, &alike_.slopeU, &alike_.slopeV, &alike_.begins})
+        values->resize(alike_.rays.size());
+    alike_.slopesU.resize(alike_.rays.size());
+    alike_.slopesV.resize(alike_.rays.size());
+    alike_.slices.assign(bundles, {std::numeric_limits<double>::infinity(), -1});
+    for (std::size_t i = 0; i < alike_.rays.size(); ++i) {
+        const SightRay& ray = rays[alike_.rays[i]];
+        alike_.startU[i] = ray.start.x;
+        alike_.startV[i] = ray.start.y;
+        alike_.slopeU[i] = ray.slope.x;
+        alike_.slopeV[i] = ray.slope.y;
+        alike_.begins[i] = isExtreme() ? ray.nearest : firstWhole(ray);
+        alike_.slopesU[i] = float(ray.slope.x);
+        alike_.slopesV[i] = float(ray.slope.y);
+        glm::dvec2& slices = alike_.slices[i / kRayBundle];
+        slices = {std::min(slices.x, ray.slices.x), std::max(slices.y, ray.slices.y)};
+    }
+    sums_.reset(alike_.rays.size(), isExtreme() ? kNothing : 0.0f);
+    if (rule_ == RayRule::kMean) shares_.reset(alike_.rays.size(), 0.0f);
+    for (std::vector<float>* values : {&u_, &v_, &firstSlice_}) values->resize(alike_.rays.size());
+    wholeU_.resize(alike_.rays.size());
+    wholeV_.resize(alike_.rays.size());
+}
+
+void RayFollower::followAlike(std::span<const SightRay> rays, std::span<RayFound> found) {
+    const std::size_t count = alike_.rays.size();
+    gather(rays);
+    double from = axes_.count.x;
+    double to = -1;
+    for (const glm::dvec2& slices : alike_.slices) {
+        from = std::min(from, slices.x);
+        to = std::max(to, slices.y);
+    }
+    const std::vector<int>& layers = volume_.layers[std::size_t(axes_.order[0])];
+    int before = -2;
+    for (std::size_t n = 0; n < layers.size(); ++n) {
+        const int layer = layers[axes_.sign.x > 0 ? n : layers.size() - 1 - n];
+        const int a = axes_.sign.x * (8 * layer - axes_.first.x);
+        const int b = axes_.sign.x * (8 * layer + 7 - axes_.first.x);
+        glm::ivec2 slices(std::max(std::min(a, b), 0), std::min(std::max(a, b), axes_.count.x - 1));
+        if (slices.x > to + 1) break;
+        if (slices.y < from - 1) continue;
+        chosen_.clear();
+        for (std::size_t bundle = 0; bundle < alike_.slices.size(); ++bundle) {
+            const glm::dvec2& own = alike_.slices[bundle];
+            if (own.y > slices.x - 1 && own.x < slices.y + 1) chosen_.push_back(bundle);
+        }
+        const int last = slices.y;
+        // Largest values are looked for between slices, too, also before and behind what is there.
+        if (isExtreme()) slices = {before == slices.x - 1 ? slices.x : slices.x - 1, slices.y + 1};
+        if (!chosen_.empty()) addSlices(rays, chosen_, slices);
+        before = last;
+    }
+    for (std::size_t i = 0; i < count; ++i) found[alike_.rays[i]] = foundAt(i);
+}
+
+RayFound RayFollower::foundAt(std::size_t i) const {
+    const double found = double(sums_.found[i]);
+    if (rule_ == RayRule::kSum) return {found, 0, true};
+    if (rule_ == RayRule::kMean) {
+        const double share = double(shares_.found[i]);
+        return {share > 0 ? found / share : 0, 0, share > 0, share};
+    }
+    const bool isMet = sums_.met[i] > 0;
+    return {isMet ? found : 0, double(sums_.rest[i]), isMet};
+}
+
+void RayFollower::addSlices(std::span<const SightRay> rays, Bundles bundles,
+                            const glm::ivec2& slices) {
+    const PatchBox box = boxOf(bundles, slices);
+    if (!reader_.find(axes_, box)) return;
+    if (double(box.size.y) * box.size.z <= kMostVoxels) return addPatch(rays, bundles, box);
+    if (bundles.size() == 1) return addOneByOne(rays, bundles.front(), slices);
+    const std::size_t half = bundles.size() / 2;
+    addSlices(rays, bundles.first(half), slices);
+    addSlices(rays, bundles.subspan(half), slices);
+}
+
+// Follows a bundle of lines that lie far apart: each as a bundle of its own.
+void RayFollower::addOneByOne(std::span<const SightRay> rays, std::size_t bundle,
+                              const glm::ivec2& slices) {
+    const Alike whole = alike_;
+    const Sums sums = sums_, shares = shares_;
+    Sums newSums = sums, newShares = shares;
+    const std::size_t first = kRayBundle * bundle;
+    for (std::size_t k = first; k < first + kRayBundle; ++k) {
+        for (std::size_t i = first; i < first + kRayBundle; ++i) {
+            alike_.rays[i] = whole.rays[k];
+            alike_.startU[i] = whole.startU[k];
+            alike_.startV[i] = whole.startV[k];
+            alike_.slopeU[i] = whole.slopeU[k];
+            alike_.slopeV[i] = whole.slopeV[k];
+            alike_.begins[i] = whole.begins[k];
+            alike_.slopesU[i] = whole.slopesU[k];
+            alike_.slopesV[i] = whole.slopesV[k];
+            sums_.set(i, sums, k);
+            if (rule_ == RayRule::kMean) shares_.set(i, shares, k);
+        }
+        const std::size_t alone[] = {bundle};
+        const PatchBox box = boxOf(alone, slices);
+        if (reader_.find(axes_, box)) addPatch(rays, alone, box);
+        newSums.set(k, sums_, k);
+        if (rule_ == RayRule::kMean) newShares.set(k, shares_, k);
+    }
+    alike_ = whole;
+    sums_ = newSums;
+    shares_ = newShares;
+}
+
+// What lines read of some slices, first and last, and between these and those beside them. Where
+// they leave the volume they read what lies beside it.
+PatchBox RayFollower::boxOf(Bundles bundles, const glm::ivec2& slices) const {
+    PatchBox box;
+    box.first.x = slices.x;
+    box.size.x = slices.y - slices.x + 1;
+    const std::vector<double>* const starts[] = {&alike_.startU, &alike_.startV};
+    const std::vector<double>* const slopes[] = {&alike_.slopeU, &alike_.slopeV};
+    for (int axis = 0; axis < 2; ++axis) {
+        double low = std::numeric_limits<double>::infinity();
+        double high = -low;
+        for (const std::size_t bundle : bundles) {
+            const double* const start = starts[axis]->data() + kRayBundle * bundle;
+            const double* const slope = slopes[axis]->data() + kRayBundle * bundle;
+            for (std::size_t k = 0; k < kRayBundle; ++k) {
+                low = std::min(low, start[k] + (slices.x - 1) * slope[k]);
+                high = std::max(high, start[k] + slices.y * slope[k]);
+            }
+        }
+        const double beyond = axes_.count[axis + 1];
+        const int first = int(std::floor(std::clamp(low, -4.0, beyond)));
+        // Four voxels from there on, and one for what is behind the last by less than a voxel.
+        const int last = int(std::floor(std::clamp(high, -4.0, beyond))) + 4;
+        box.first[axis + 1] = first;
+        box.size[axis + 1] = last - first + 1;
+    }
+    return box;
+}
+
+void RayFollower::addPatch(std::span<const SightRay> rays, Bundles bundles, const PatchBox& box) {
+    RayPatch patch = reader_.read(axes_, box);
+    for (const std::size_t bundle : bundles) {
+        const std::size_t first = kRayBundle * bundle;
+        for (std::size_t i = first; i < first + kRayBundle; ++i) {
+            u_[i] = behindWhole(alike_.startU[i] + box.first.x * alike_.slopeU[i], box.first.y,
+                                wholeU_[i]);
+            v_[i] = behindWhole(alike_.startV[i] + box.first.x * alike_.slopeV[i], box.first.z,
+                                wholeV_[i]);
+            firstSlice_[i] = float(alike_.begins[i] - box.first.x);
+        }
+    }
+    if (!isExtreme()) addCuts(rays, bundles, box);
+    const auto run = [&](Sums& sums) {
+        RayRun lines;
+        lines.bundles = bundles.data();
+        lines.count = bundles.size();
+        lines.wholeU = wholeU_.data();
+        lines.wholeV = wholeV_.data();
+        lines.u = u_.data();
+        lines.v = v_.data();
+        lines.slopeU = alike_.slopesU.data();
+        lines.slopeV = alike_.slopesV.data();
+        lines.firstSlice = firstSlice_.data();
+        lines.found = sums.found.data();
+        lines.rest = sums.rest.data();
+        lines.met = sums.met.data();
+        lines.depth = float(box.first.x);
+        isExtreme() ? maxSlices(patch, lines) : sumSlices(patch, lines);
+    };
+    run(sums_);
+    if (rule_ != RayRule::kMean) return;
+    patch.values = patch.active;
+    run(shares_);
+}
+
+// Adds what lines have of slices of which they see a part.
+void RayFollower::addCuts(std::span<const SightRay> rays, Bundles bundles, const PatchBox& box) {
+    const double last = box.first.x + box.size.x - 1;
+    for (const std::size_t bundle : bundles) {
+        for (std::size_t i = kRayBundle * bundle; i < kRayBundle * (bundle + 1); ++i) {
+            const double whole = alike_.begins[i];
+            if (whole > box.first.x && whole - 2 <= last) addCut(rays[alike_.rays[i]], i, box);
+        }
+    }
+}
+
+void RayFollower::addCut(const SightRay& ray, std::size_t i, const PatchBox& box) {
+    const RayPatch& patch = reader_.patch();
+    const int last = box.first.x + box.size.x - 1;
+    const int end = int(std::min(firstWhole(ray) - 1, double(last)));
+    for (int slice = std::max(int(firstWhole(ray)) - 2, box.first.x); slice <= end; ++slice) {
+        const std::ptrdiff_t at = (slice - box.first.x) * patch.sliceStep;
+        const double from = std::max(ray.nearest, slice - 1.0);
+        const auto addTo = [&](const float* values, Sums& sums) {
+            const CutSlice cut{patch, values + at, box, ray};
+            sums.found[i] += float(cut.from(slice, from));
+        };
+        addTo(patch.values, sums_);
+        if (rule_ == RayRule::kMean) addTo(patch.active, shares_);
+    }
+}
+
+}  // namespace deltasplat
