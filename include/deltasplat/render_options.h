@@ -54,6 +54,9 @@ struct SplatOptions {
     /// that is too coarse to see it, empty lets slices be drawn as one (mostJoined,
     /// RenderStats::joined), unless sigma, resolution or footprintWidth is given.
     std::optional<int> between;
+    /// Whether a voxel that is divided stays whole where next to nothing of it would be seen in
+    /// what it becomes: nothing vanishes, but what is a voxel thin looks larger than it is.
+    bool keepsLone = false;
     Tolerance tolerance;  ///< how far what is shown of a voxel may be from what is true
     std::optional<int> footprintWidth;  ///< in sheet pixels; empty: 1 (hasOwnPixel) or by sigma
     PictureFilter filter = PictureFilter::kCatmullRom;
