@@ -12,6 +12,7 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
+#include "image/brace_free_file.h"
 #include "image/linear_rec709.h"
 #include "image/memory_file.h"
 #include "lower_case.h"
@@ -106,7 +107,8 @@ class Processor : public ColorProcessor {
         if (!options_.colorSpace.empty()) {
             requireOneOf("`colorSpace`", options_.colorSpace, config_.getColorSpaceNames());
             stored_ = config_.createColorProcessor(working_, options_.colorSpace);
-            requireMade(stored_, config_, "`colorSpace`", options_.colorSpace);
+            requireMade(stored_, complaint(config_.geterror()), "`colorSpace`",
+                        options_.colorSpace);
         }
         if (!options_.display.empty() || !options_.displayView.empty()) findDisplay();
         if (!options_.look.empty()) {
@@ -115,8 +117,10 @@ class Processor : public ColorProcessor {
             if (isNone) std::ofstream(nothing.name()) << kNoConfig;
             OIIO::ColorConfig none(isNone ? nothing.name() : std::string());
             OIIO::ColorConfig& known = isNone ? none : config_;
-            look_ = known.createFileTransform(std::filesystem::absolute(options_.look).string());
-            requireMade(look_, known, "`look`", options_.look.string());
+            const BraceFreeFile table(options_.look);
+            look_ = known.createFileTransform(table.name());
+            requireMade(look_, table.named(complaint(known.geterror())), "`look`",
+                        options_.look.string());
         }
     }
 
@@ -147,15 +151,14 @@ class Processor : public ColorProcessor {
         }
         requireOneOf("`displayView`", options_.displayView, config_.getViewNames(options_.display));
         shown_ = config_.createDisplayTransform(options_.display, options_.displayView, working_);
-        requireMade(shown_, config_, "`display`", options_.display);
+        requireMade(shown_, complaint(config_.geterror()), "`display`", options_.display);
     }
 
-    static void requireMade(const OIIO::ColorProcessorHandle& made, OIIO::ColorConfig& config,
+    static void requireMade(const OIIO::ColorProcessorHandle& made, const std::string& reason,
                             const char* option, const std::string& name) {
         if (made) return;
-        throw Error(ErrorCode::kInput,
-                    gotExpected(option, printable(name) + ": " + complaint(config.geterror()),
-                                "what OpenColorIO can make a transform of"));
+        throw Error(ErrorCode::kInput, gotExpected(option, printable(name) + ": " + reason,
+                                                   "what OpenColorIO can make a transform of"));
     }
 
     void apply(const OIIO::ColorProcessorHandle& processor, Image& image) const {
