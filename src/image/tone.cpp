@@ -14,6 +14,7 @@
 
 #include "default_floats.h"
 #include "deltasplat/error.h"
+#include "image/quantize.h"
 #include "number_text.h"
 #include "parallel.h"
 #include "portable_math.h"
@@ -134,6 +135,20 @@ double clippedShare(const Image& image) {
         clipped += clippedHere;
     });
     return seen > 0 ? double(clipped) / double(seen) : 0.0;
+}
+
+std::size_t countBeyondHalf(const Image& image) {
+    std::atomic<std::size_t> beyond = 0;
+    parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
+        std::size_t beyondHere = 0;
+        for (int x = 0; x < image.size.x; ++x) {
+            const float* const rgba = image.pixel(x, int(y));
+            beyondHere +=
+                std::any_of(rgba, rgba + 4, [](float v) { return std::abs(v) > kLargestHalf; });
+        }
+        beyond += beyondHere;
+    });
+    return beyond;
 }
 
 }  // namespace deltasplat

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/make_picture.h"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "annotate/annotate.h"
@@ -11,6 +14,7 @@
 #include "deltasplat/render.h"
 #include "deltasplat/render_deep.h"
 #include "dims_text.h"
+#include "image/quantize.h"
 #include "listener_part.h"
 #include "number_text.h"
 #include "output_files.h"
@@ -95,11 +99,27 @@ RenderResult renderHeldOut(const std::filesystem::path& depths, const Volume& vo
     return result;
 }
 
+// How many pixels have a sample that halves do not hold.
+std::size_t countBeyondHalf(const DeepImage& deep) {
+    std::size_t pixels = 0;
+    for (int y = 0; y < deep.size.y; ++y) {
+        for (int x = 0; x < deep.size.x; ++x) {
+            const std::span<const DeepSample> samples = deep.pixel(x, y);
+            pixels += std::any_of(samples.begin(), samples.end(), [](const DeepSample& sample) {
+                const glm::vec4& v = sample.rgba;
+                return std::max({std::abs(v.r), std::abs(v.g), std::abs(v.b)}) > kLargestHalf;
+            });
+        }
+    }
+    return pixels;
+}
+
 // Writes what the picture is asked for as: all of it, or what is seen of it.
 void writePicture(const RenderCommand& command, const DeepImage& deep, const Image& flat,
-                  const ImageFileOptions& options) {
-    if (command.deep) return writeDeepImage(command.output, deep, options);
-    writeImage(command.output, flat, options);
+                  const ImageFileOptions& options, const Listener& listener) {
+    if (!command.deep) return writeImage(command.output, flat, options);
+    if (!options.floatExr) warnOfHalves(command, countBeyondHalf(deep), listener);
+    writeDeepImage(command.output, deep, options);
 }
 
 RenderResult renderPrepared(const PreparedScene& scene, const RenderOptions& options,
@@ -175,7 +195,7 @@ void showScene(const RenderCommand& command, const ReadScene& scene, const Seque
     writing.report(0);
     const auto beginWrite = std::chrono::steady_clock::now();
     if (part.take) part.take(result.image);
-    if (part.isWritten) writePicture(command, deep, result.image, image);
+    if (part.isWritten) writePicture(command, deep, result.image, image, writing);
     made.times.write = secondsSince(beginWrite);
 }
 

@@ -118,6 +118,8 @@ void finishLight(const RenderCommand& command, Image& image, ImageFileOptions& f
     fillForJpeg(command, image, listener);
     applyTone(command, image, file, listener);
     convertColors(command, image, file);
+    if (isExr(command) && !file.floatExr && !command.deep)
+        warnOfHalves(command, countBeyondHalf(image), listener);
 }
 
 }  // namespace deltasplat

@@ -6,6 +6,7 @@
 
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/image/exr_rows.h"
+#include "deltasplat/image/tone.h"
 #include "deltasplat/image/write_image.h"
 #include "deltasplat/parted_picture.h"
 #include "dims_text.h"
@@ -13,6 +14,7 @@
 #include "listener_part.h"
 #include "memory.h"
 #include "render/render_modes.h"
+#include "render/tone_options.h"
 
 namespace deltasplat {
 namespace {
@@ -84,11 +86,14 @@ void writeInParts(const RenderCommand& command, glm::ivec2 size, const ShowPart&
     }
     file = fileOptions();
     ExrRows rows(command.output, size, box, file);
+    std::size_t beyondHalf = 0;
     forParts(show, command, box, [&](const Image& image, int first) {
+        if (!file.floatExr) beyondHalf += countBeyondHalf(image);
         rows.write(image);
         listener.report(double(first + image.size.y - box.min.y) / box.size().y);
     });
     rows.finish();
+    warnOfHalves(command, beyondHalf, listener);
 }
 
 RenderResult renderInParts(const RenderCommand& command, const PreparedScene& scene,

@@ -28,14 +28,17 @@ std::string percentText(double share) {
     return numberText(std::round(1000 * share) / 10) + " %";
 }
 
-void warnOfClipping(const RenderCommand& command, const Image& image, const Listener& listener) {
+// @param isBeyondHalf  whether there was light that an .exr of halves does not hold
+void warnOfClipping(const RenderCommand& command, const Image& image, bool isBeyondHalf,
+                    const Listener& listener) {
     const double share = clippedShare(image);
     if (!(share > kNoticedShare)) return;
     listener.warn(command.output.string() + ": " + percentText(share) + " of the pixels " +
                   (isOpaque(image) ? "are brighter than white"
                                    : "that are not clear are brighter than their alpha") +
                   ", and clipped: --exposure darkens all, --tone filmic rolls highlights off, an "
-                  ".exr keeps them");
+                  ".exr " +
+                  (isBeyondHalf ? "with --float keeps them" : "keeps them"));
 }
 
 }  // namespace
@@ -69,16 +72,25 @@ void warnOfUnusedTone(const CLI::App& app, const RenderCommand& command, Progres
         if (isGiven(app, option)) display.warn(std::string(option) + ": has no effect " + where);
 }
 
+void warnOfHalves(const RenderCommand& command, std::size_t pixels, const Listener& listener) {
+    if (pixels == 0) return;
+    listener.warn(command.output.string() + ": " + std::to_string(pixels) +
+                  (pixels == 1 ? " pixel is" : " pixels are") +
+                  " brighter than 65504, the most that halves hold, and clipped to it: --float "
+                  "keeps them");
+}
+
 void applyTone(const RenderCommand& command, Image& image, ImageFileOptions& file,
                const Listener& listener) {
     if (command.picture.render.mode != Mode::kComposite || isExr(command)) return;
     const ToneChoice& choice = command.tone;
     file.metadata.insert(file.metadata.end(), {{"exposure", numberText(choice.exposureStops)},
                                                {"tone", toneName(choice.tone)}});
+    const bool isBeyondHalf = countBeyondHalf(image) > 0;
     if (choice.exposureStops != 0) expose(image, choice.exposureStops);
     if (command.color.isShown()) return ColorTransform(command.color).show(image);
     if (choice.tone == Tone::kFilmic) return toneFilmic(image);
-    warnOfClipping(command, image, listener);
+    warnOfClipping(command, image, isBeyondHalf, listener);
 }
 
 }  // namespace deltasplat

@@ -18,6 +18,9 @@ void addToneOptions(CLI::App& app, ToneChoice& choice);
 /// modes other than composite show values.
 void warnOfUnusedTone(const CLI::App& app, const RenderCommand& command, ProgressDisplay& display);
 
+/// Warns of pixels that are brighter than what the halves of an .exr hold.
+void warnOfHalves(const RenderCommand& command, std::size_t pixels, const Listener& listener);
+
 /// Turns a picture of light, background included, into what a file of 8 or 16 bits shows of it, and
 /// says so in `file`; leaves all other pictures alone. Warns if a noticeable share of it is
 /// clipped.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "deltasplat/image/image.h"
@@ -38,5 +39,8 @@ void toneFilmic(Image& image);
 /// Returns which share of the pixels that are not clear is clipped in files of 8 and 16 bits: a
 /// colour of theirs is above alpha by more than 1/256, which can be seen. 0 if all is clear.
 double clippedShare(const Image& image);
+
+/// Returns how many pixels have a channel beyond 65504, the most that the halves of an .exr hold.
+std::size_t countBeyondHalf(const Image& image);
 
 }  // namespace deltasplat
