@@ -10,9 +10,10 @@ namespace deltasplat {
 /// Makes OpenEXR use as many threads as the library where OpenImageIO reads with it, which would
 /// start as many as there are cores. For who writes with it there is ExrThreads
 /// (image/exr_header.h).
-inline void limitExrThreads() {
+/// @param mayThread  whether there may be several at all: each has memory of its own
+inline void limitExrThreads(bool mayThread) {
     constexpr int kNone = -1;  // but the caller
-    OIIO::attribute("exr_threads", threadCount() > 1 ? threadCount() : kNone);
+    OIIO::attribute("exr_threads", mayThread && threadCount() > 1 ? threadCount() : kNone);
 }
 
 }  // namespace deltasplat

@@ -75,6 +75,7 @@ constexpr FlagName kFlagNames[] = {
     {"noise", "--noise"},
     {"origin", "--origin"},
     {"overscanPixels", "--overscan"},
+    {"paletteNumbers=true", "--palette index"},
     {"parts", "--emission-grid"},
     {"picture", "--aov transmittance"},
     {"pixelAspect", "--pixel-aspect"},

@@ -10,9 +10,11 @@
 #include <vector>
 
 #include "default_floats.h"
+#include "deltasplat/error.h"
 #include "exr_threads.h"
 #include "image/encode_image.h"
 #include "image/quantize.h"
+#include "ingest/images/image_claims.h"
 #include "modules/image_module.h"
 #include "srgb.h"
 
@@ -112,7 +114,11 @@ Image image_module::readThumbnail(const std::filesystem::path& file, int mostSid
     const DefaultFloats floats;
     OIIO::ImageSpec asStored;
     asStored.attribute("oiio:UnassociatedAlpha", 1);
-    limitExrThreads();
+    try {
+        limitExrThreads(requireClaims(file));
+    } catch (const Error&) {
+        return {};
+    }
     const auto input = OIIO::ImageInput::open(file.string(), &asStored);
     Image image = input ? shrunk(*input, mostSide) : Image();
     // What is not asked for is printed when the thread ends.

@@ -10,6 +10,7 @@
 #include "deltasplat/error.h"
 #include "exr_threads.h"
 #include "ingest/guards/silent_stderr.h"
+#include "ingest/images/image_claims.h"
 #include "ingest/images/image_file.h"
 #include "modules/image_module.h"
 
@@ -33,7 +34,7 @@ bool image_module::isWholeImage(const std::filesystem::path& file) {
     bool isWhole = false;
     const SilentStderr silent;
     try {
-        limitExrThreads();
+        limitExrThreads(requireClaims(file));
         const auto input = OIIO::ImageInput::open(file.string());
         isWhole = input && isReadable(file, *input) && !input->has_error();
         if (input) (void)input->geterror();

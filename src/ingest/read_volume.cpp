@@ -38,7 +38,7 @@ DenseSource openDense(const std::filesystem::path& input, const InputKind& kind,
             return openDicom(input, kind.name,
                              chooseSeries(input, findSeries(input, kind.files), options.series));
         case InputKind::Format::kImages:
-            return openImages(input, kind.name, kind.files, options.raw, listener);
+            return openImages(input, kind.name, kind.files, options, listener);
         default:
             return openRaw(input, options.raw);
     }

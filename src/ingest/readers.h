@@ -30,9 +30,8 @@ DenseSource openMetaImage(const std::filesystem::path& file, const ReadOptions& 
 /// Opens a stack of images, or the pages of one.
 /// @param input   for messages
 /// @param files   in order
-/// @param format  spacing and origin are taken from it
 DenseSource openImages(const std::filesystem::path& input, const std::string& name,
-                       const std::vector<std::filesystem::path>& files, const RawFormat& format,
+                       const std::vector<std::filesystem::path>& files, const ReadOptions& options,
                        const Listener& listener);
 
 /// Reads one scalar grid of a .vdb file, or with `all` (and no grid name) every one; as

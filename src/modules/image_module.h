@@ -39,7 +39,7 @@ struct ImageModule {
     CameraMotion (*readExrCamera)(const std::filesystem::path& file, const Listener& listener);
     DenseSource (*openImages)(const std::filesystem::path& input, const std::string& name,
                               const std::vector<std::filesystem::path>& files,
-                              const RawFormat& format, const Listener& listener);
+                              const ReadOptions& options, const Listener& listener);
 };
 
 /// Returns the module: linked to the library (linked_image_module.cpp), or what the program loads
@@ -60,7 +60,7 @@ DepthImage readDepthImage(const std::filesystem::path& file, const Listener& lis
 Environment readEnvironment(const std::filesystem::path& file, const Listener& listener);
 CameraMotion readExrCamera(const std::filesystem::path& file, const Listener& listener);
 DenseSource openImages(const std::filesystem::path& input, const std::string& name,
-                       const std::vector<std::filesystem::path>& files, const RawFormat& format,
+                       const std::vector<std::filesystem::path>& files, const ReadOptions& options,
                        const Listener& listener);
 
 inline constexpr ImageModule kModule{encodeImage,     makeColorProcessor, isWholeImage,

@@ -34,9 +34,9 @@ CameraMotion readExrCamera(const std::filesystem::path& file, const Listener& li
 }
 
 DenseSource openImages(const std::filesystem::path& input, const std::string& name,
-                       const std::vector<std::filesystem::path>& files, const RawFormat& format,
+                       const std::vector<std::filesystem::path>& files, const ReadOptions& options,
                        const Listener& listener) {
-    return imageModule().openImages(input, name, files, format, listener);
+    return imageModule().openImages(input, name, files, options, listener);
 }
 
 std::vector<DicomSeries> findSeries(const std::filesystem::path& input,

@@ -30,6 +30,12 @@ Parser<bool> endian() {
     };
 }
 
+Parser<bool> palette() {
+    return [](const std::string& option, const std::string& text) {
+        return choice({"index", "color"})(option, text) == "index";
+    };
+}
+
 }  // namespace
 
 void addInputOptions(CLI::App& app, ReadOptions& options) {
@@ -60,15 +66,22 @@ void addInputOptions(CLI::App& app, ReadOptions& options) {
 
     OptionGroup several(app, "Input, several volumes");
     several.addValue("--volume", "N", options.volume, wholeNumber(),
-                     "NIfTI and .npy of more than three axes: which volume, from 0 on\n"
-                     "(without it they are an error; info tells how many there are)");
+                     "NIfTI and .npy of more than three axes, TIFF of several channels or\n"
+                     "times: which volume, from 0 on (without it they are an error; info\n"
+                     "tells how many there are)");
     several.addValue("--series", "UID", options.series, anyText(),
                      "DICOM folder of several series: which one (without it they are\n"
                      "an error; info lists them)");
 
+    OptionGroup(app, "Input, images")
+        .addValue("--palette", "index|color", options.paletteNumbers, palette(),
+                  "Read the numbers of a palette's colours, as labels are kept, or the\n"
+                  "colours' luminance (default color, which is said; index with labels\n"
+                  "as --tf, and of ImageJ's palettes, which show values)");
+
     OptionGroup place(app, "Input, .raw, .raw.gz, .npy and images");
     place.addValue("--spacing", "X,Y,Z", raw.spacing, voxelSpacing(),
-                   withDefault("World units per voxel", vectorText(raw.spacing)));
+                   "World units per voxel (default 1,1,1, or what an image says)");
     place.addValue(
         "--origin", "X,Y,Z", raw.origin, vector3(1e15),
         withDefault("World position of the centre of voxel 0,0,0", vectorText(raw.origin)));
@@ -101,10 +114,13 @@ void requireChoice(const CLI::App& app, const std::string& option, bool meant,
 void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesystem::path>& inputs,
                               const Listener& listener) {
     std::set<InputKind::Format> formats;
+    bool anyTiff = false;
     for (const std::filesystem::path& input : inputs) {
         // What is wrong with an input is for its reader to say.
         try {
-            formats.insert(findInput(input, {}).format);
+            const InputKind kind = findInput(input, {});
+            formats.insert(kind.format);
+            anyTiff = anyTiff || isTiffName(kind.files.front());
         } catch (const Error&) {
             return;
         }
@@ -112,8 +128,8 @@ void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesy
     const bool anyRaw = formats.contains(InputKind::Format::kRaw);
     const bool anyNpy = formats.contains(InputKind::Format::kNpy);
     const bool anyImages = formats.contains(InputKind::Format::kImages);
-    requireChoice(app, "--volume", anyNpy || formats.contains(InputKind::Format::kNifti),
-                  "a .nii, .nii.gz or .npy");
+    requireChoice(app, "--volume", anyNpy || anyTiff || formats.contains(InputKind::Format::kNifti),
+                  "a .nii, .nii.gz, .npy or .tif");
     requireChoice(app, "--series", formats.contains(InputKind::Format::kDicom), "a DICOM");
     const auto warnOf = [&](const std::vector<std::string>& options, const std::string& input) {
         const std::string remark = ": has no effect without " + input;
@@ -127,6 +143,7 @@ void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesy
     if (!anyRaw) {
         warnOf({"--dims", "--type", "--endian", "--skip-bytes"}, "a .raw or .raw.gz input");
     }
+    if (!anyImages) warnOf({"--palette"}, "an input of images");
     if (!anyRaw && !anyNpy && !anyImages) {
         warnOf({"--spacing", "--origin"}, "an input of raw values or images");
     }

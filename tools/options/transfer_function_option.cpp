@@ -70,6 +70,16 @@ TransferFunction readTransferFunctionOption(const std::filesystem::path& given,
     return readTransferFunction(option.file, listener);
 }
 
+bool isForLabels(const std::filesystem::path& given) {
+    try {
+        const TransferFunctionOption option = parseTransferFunction(given);
+        if (option.preset) return option.preset->values == Preset::Values::kLabels;
+        return !option.file.empty() && isLabelTable(option.file);
+    } catch (const Error&) {
+        return false;
+    }
+}
+
 std::map<int, std::string> labelNames(const std::filesystem::path& given) {
     const TransferFunctionOption option = parseTransferFunction(given);
     if (option.file.empty() || !isLabelTable(option.file)) return {};

@@ -30,6 +30,9 @@ TransferFunctionOption parseTransferFunction(const std::filesystem::path& given)
 TransferFunction readTransferFunctionOption(const std::filesystem::path& given,
                                             const Listener& listener);
 
+/// Whether it is for labels: a table of them, or a preset. What cannot be read is not.
+bool isForLabels(const std::filesystem::path& given);
+
 /// Returns what a table of labels calls them; of anything else no names.
 /// @throw as readTransferFunctionOption
 std::map<int, std::string> labelNames(const std::filesystem::path& given);

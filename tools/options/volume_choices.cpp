@@ -9,9 +9,10 @@ namespace deltasplat {
 namespace {
 
 bool mayHoldSeveral(const std::filesystem::path& input) {
-    const InputKind::Format format = findInput(input, {}).format;
-    return format == InputKind::Format::kNifti || format == InputKind::Format::kNpy ||
-           format == InputKind::Format::kDicom;
+    const InputKind kind = findInput(input, {});
+    const bool isTiff = kind.files.size() == 1 && isTiffName(kind.files.front());
+    return isTiff || kind.format == InputKind::Format::kNifti ||
+           kind.format == InputKind::Format::kNpy || kind.format == InputKind::Format::kDicom;
 }
 
 }  // namespace

@@ -388,6 +388,7 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
                     RenderOptions& options, const Listener& listener, const FrameLook* look,
                     const VolumeReader& reader) {
     ReadOptions read = picture.read;
+    if (!read.paletteNumbers && isForLabels(picture.transferFunction)) read.paletteNumbers = true;
     read.keepInexact = picture.render.mode != Mode::kComposite;
     // Frames are kept, many at a time, and told by what they take.
     read.readLater = !look && mayShowSome(picture, options.optics);

@@ -21,7 +21,8 @@ struct RawFormat {
     std::optional<glm::i64vec3> dims;  ///< voxels along x (fastest), y, z; each at least 1
     std::optional<std::string> type;   ///< uint8 int8 uint16 int16 uint32 int32 float32 float64
     std::optional<bool> bigEndian;     ///< default: little, or what the name says
-    glm::dvec3 spacing{1.0};           ///< world units per voxel, each 1e-15..1e15; images too
+    /// World units per voxel, each 1e-15..1e15; images too. Empty: 1, or what an image says.
+    std::optional<glm::dvec3> spacing;
     glm::dvec3 origin{0.0};       ///< world position of the centre of voxel (0,0,0), within 1e15 of
                                   ///< the world's; images too
     std::uint64_t skipBytes = 0;  ///< header bytes to pass over (after decompression)
@@ -38,7 +39,8 @@ struct ReadOptions {
     RawFormat raw;                   ///< .raw: what the bytes are
     /// NIfTI and .npy of more than three axes: which of their volumes, from 0 on; the fourth axis
     /// counts fastest (of a C-ordered .npy the one before the last three). Empty: there has to be
-    /// one. Of a segmentation of 3D Slicer in layers: which layer; empty: all of them, a voxel
+    /// one. TIFF that ImageJ or OME-XML describes: which of its channels and times, channels
+    /// counting fastest. Of a segmentation of 3D Slicer in layers: which layer; empty: all of them, a voxel
     /// having the label that Slicer shows on top. Other formats pay no heed to it.
     std::optional<std::int64_t> volume;
     /// DICOM: the UID of the series to read. Empty: there has to be one. Other formats pay no heed
@@ -53,6 +55,10 @@ struct ReadOptions {
     /// magnitude (a quarter of it, if possible), where 65536 codes are enough for that. Empty, or
     /// not enough: as without it.
     std::optional<double> relativeError;
+    /// Images whose pixels are numbers of a palette's colours: whether these numbers are read, as
+    /// labels are kept, or the luminance of the colours. Empty: the luminance, which is said, but
+    /// of ImageJ's, whose palettes are how values are shown, the numbers.
+    std::optional<bool> paletteNumbers;
     bool keepSource = false;  ///< fill Volume::source
     /// Fill Volume::source where the code book is not exact: what X-rays and largest values read.
     bool keepInexact = false;

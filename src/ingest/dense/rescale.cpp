@@ -81,10 +81,10 @@ void rescaleValues(const std::byte* from, std::size_t count, RawType type, bool 
     });
 }
 
-DenseSource rescaled(DenseSource source, const Rescale& rescale) {
+DenseSource rescaled(DenseSource source, const Rescale& rescale, std::optional<RawType> type) {
     if (rescale.isIdentity()) return source;
     DenseSource result = source;
-    result.type = rescaledType(source.type);
+    result.type = type.value_or(rescaledType(source.type));
     result.bigEndian = std::endian::native == std::endian::big;
     result.rows = nullptr;
     result.forEachLayer = [source = std::move(source), rescale, type = result.type](

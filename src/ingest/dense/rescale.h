@@ -28,6 +28,7 @@ void rescaleValues(const std::byte* from, std::size_t count, RawType type, bool 
                    const Rescale& rescale, RawType toType, std::byte* to);
 
 /// Returns the source with its values rescaled; itself if the rescale is the identity.
-DenseSource rescaled(DenseSource source, const Rescale& rescale);
+/// @param type  that they get; empty: rescaledType
+DenseSource rescaled(DenseSource source, const Rescale& rescale, std::optional<RawType> type = {});
 
 }  // namespace deltasplat

@@ -172,6 +172,11 @@ bool isImageName(const std::filesystem::path& file) {
     return formatOf(file) == Format::kImages;
 }
 
+bool isTiffName(const std::filesystem::path& file) {
+    const std::string extension = lowerExtension(file);
+    return extension == ".tif" || extension == ".tiff";
+}
+
 InputKind findInput(const std::filesystem::path& input, const Listener& listener) {
     std::error_code error;
     if (std::filesystem::is_directory(input, error)) return findInFolder(input, listener);

@@ -22,6 +22,9 @@ struct InputKind {
 /// Whether a file's extension is that of images, of which a stack is a volume.
 bool isImageName(const std::filesystem::path& file);
 
+/// Whether a file's extension is that of a TIFF, which may hold several volumes.
+bool isTiffName(const std::filesystem::path& file);
+
 /// Finds out what an input is: a file by its extension, a folder by what lies in it, a name with
 /// `####` or `%04d` by the files that it stands for. Warns of files in a folder that are passed
 /// over.

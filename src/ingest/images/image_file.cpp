@@ -5,15 +5,22 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
+#include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "deltasplat/error.h"
 #include "exr_threads.h"
 #include "ingest/files/file_bytes.h"
 #include "ingest/files/file_name.h"
+#include "ingest/files/input_kind.h"
 #include "ingest/guards/cleared_memory.h"
 #include "ingest/guards/silent_stderr.h"
+#include "ingest/images/image_claims.h"
 #include "ingest/images/pgm_samples.h"
+#include "ingest/images/stored_numbers.h"
 #include "printable.h"
 
 namespace deltasplat {
@@ -21,11 +28,6 @@ namespace {
 
 using OIIO::ImageInput;
 using OIIO::ImageSpec;
-
-bool isTiff(const std::filesystem::path& file) {
-    const std::string extension = lowerExtension(file);
-    return extension == ".tif" || extension == ".tiff";
-}
 
 // OpenImageIO repeats itself on further lines.
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& complaint,
@@ -46,7 +48,7 @@ std::unique_ptr<ImageInput> openInput(const std::filesystem::path& file,
     const ClearedMemory cleared;
     // Asked for by the name of a file that its format's reader refuses, OpenImageIO would hand it
     // to all of its readers, those of DICOM and films too.
-    limitExrThreads();
+    limitExrThreads(isTiffName(file) || requireClaims(file));
     auto input = ImageInput::create(lowerExtension(file).substr(1));
     if (input && proxy != nullptr) input->set_ioproxy(proxy);
     if (!input || !input->open(file.string(), spec, config)) {
@@ -55,15 +57,11 @@ std::unique_ptr<ImageInput> openInput(const std::filesystem::path& file,
     return input;
 }
 
-// The most bytes that one byte of a file can unpack to. A header that claims more lies.
-double mostRatio(const std::filesystem::path& file, const ImageSpec& spec) {
-    // OpenImageIO does not name the packing of formats that always pack, such as PNG.
+// OpenImageIO does not name the packing of formats that always pack, such as PNG.
+std::string packingOf(const std::filesystem::path& file, const ImageSpec& spec) {
     const std::string extension = lowerExtension(file);
     const bool netpbm = extension.size() == 4 && extension[1] == 'p' && extension[3] == 'm';
-    const std::string packing = spec.get_string_attribute("compression", netpbm ? "none" : "");
-    if (packing == "none") return 8;  // single bits become bytes
-    if (packing.rfind("ccitt", 0) == 0) return 0x1p18;
-    return 0x1p13;
+    return spec.get_string_attribute("compression", netpbm ? "none" : "");
 }
 
 }  // namespace
@@ -81,7 +79,7 @@ bool hasColors(const ImageSpec& spec) {
 void requireSane(const std::filesystem::path& file, const ImageSpec& spec) {
     // OpenImageIO says that it has read them, and leaves zeros.
     const bool isOneByOne = spec.tile_width > 0 || spec.height == 1;
-    if (isTiff(file) && isOneByOne && spec.format.size() == 8) {
+    if (isTiffName(file) && isOneByOne && spec.format.size() == 8) {
         throw Error(ErrorCode::kInput, gotExpected(file.string(),
                                                    "64-bit numbers in tiles or one row, which "
                                                    "OpenImageIO cannot read",
@@ -94,25 +92,19 @@ void requireSane(const std::filesystem::path& file, const ImageSpec& spec) {
     }
     const double bytes = double(spec.width) * spec.height * spec.nchannels;
     const double held = double(std::filesystem::file_size(file));
-    if (bytes <= (held + 1024) * mostRatio(file, spec)) return;
+    if (isEnough(held, mostRatio(packingOf(file, spec)), bytes)) return;
     throw Error(ErrorCode::kInput,
                 gotExpected(file.string(), std::to_string(std::uint64_t(held)) + " bytes",
                             "enough for " + sizeText(spec)));
 }
 
-/// A TIFF as if it had one page: libtiff looks for each page from the first one on, which takes the
-/// square of their number.
-class OnePageProxy : public OIIO::Filesystem::IOProxy {
+/// A file some of whose bytes are others for who reads it.
+class PatchedFile : public OIIO::Filesystem::IOProxy {
   public:
-    OnePageProxy(const std::filesystem::path& file, const TiffPages& tiff, const TiffPage& page)
-        : IOProxy(file.string(), Read),
-          bytes_(file),
-          bigEndian_(tiff.bigEndian),
-          width_(std::size_t(tiff.offsetBytes)),
-          firstField_(tiff.firstField),
-          page_(page) {}
+    explicit PatchedFile(const std::filesystem::path& file)
+        : IOProxy(file.string(), Read), bytes_(file) {}
 
-    const char* proxytype() const override { return "one page"; }
+    const char* proxytype() const override { return "patched"; }
     std::size_t size() const override { return std::size_t(bytes_.size()); }
     std::size_t read(void* to, std::size_t bytes) override {
         const std::size_t got = pread(to, bytes, m_pos);
@@ -121,13 +113,21 @@ class OnePageProxy : public OIIO::Filesystem::IOProxy {
     }
     std::size_t pread(void* to, std::size_t bytes, std::int64_t place) override {
         const std::size_t got = readPlain(to, bytes, place);
-        replace(firstField_, page_.table, std::uint64_t(place), got, to);
-        replace(page_.nextField, 0, std::uint64_t(place), got, to);
+        for (const auto& [at, text] : patches_) replace(at, text, std::uint64_t(place), got, to);
         return got;
+    }
+    void patch(std::uint64_t place, std::string bytes) {
+        patches_.emplace_back(place, std::move(bytes));
+    }
+    void patch(std::uint64_t place, std::uint64_t number, int bytes, bool bigEndian) {
+        std::string text(std::size_t(bytes), '\0');
+        for (int i = 0; i < bytes; ++i)
+            text[std::size_t(bigEndian ? bytes - 1 - i : i)] = char((number >> (8 * i)) & 0xff);
+        patch(place, std::move(text));
     }
 
   private:
-    // libtiff is C, through which nothing may be thrown.
+    // What reads it may be C, through which nothing may be thrown.
     std::size_t readPlain(void* to, std::size_t bytes, std::int64_t place) const {
         try {
             return place < 0 ? 0 : bytes_.read(std::uint64_t(place), to, bytes);
@@ -135,41 +135,87 @@ class OnePageProxy : public OIIO::Filesystem::IOProxy {
             return 0;
         }
     }
-    // Writes a number over those of its bytes that have been read.
-    void replace(std::uint64_t field, std::uint64_t number, std::uint64_t place, std::size_t got,
-                 void* to) const {
-        for (std::size_t i = 0; i < width_; ++i) {
-            const std::uint64_t at = field + (bigEndian_ ? width_ - 1 - i : i);
-            const unsigned char byte = (number >> (8 * i)) & 0xff;
-            if (at >= place && at - place < got) {
-                std::memcpy(static_cast<char*>(to) + (at - place), &byte, 1);
-            }
+    // Writes over those bytes that have been read.
+    static void replace(std::uint64_t field, const std::string& text, std::uint64_t place,
+                        std::size_t got, void* to) {
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            const std::uint64_t at = field + i;
+            if (at >= place && at - place < got) static_cast<char*>(to)[at - place] = text[i];
         }
     }
 
     FileBytes bytes_;
-    bool bigEndian_;
-    std::size_t width_;
-    std::uint64_t firstField_;
-    TiffPage page_;
+    std::vector<std::pair<std::uint64_t, std::string>> patches_;
 };
 
+namespace {
+
+// A TIFF as if it had one page: libtiff looks for each page from the first one on, which takes the
+// square of their number.
+void patchTiff(const TiffPages& tiff, const TiffPage& page, bool asNumbers, PatchedFile& file) {
+    constexpr std::uint64_t kBlackIsZero = 1;
+    file.patch(tiff.firstField, page.table, tiff.offsetBytes, tiff.bigEndian);
+    file.patch(page.nextField, 0, tiff.offsetBytes, tiff.bigEndian);
+    if (asNumbers && page.paletteField != 0)
+        file.patch(page.paletteField, kBlackIsZero, 2, tiff.bigEndian);
+}
+
+// What OpenImageIO makes of a number of few bits is its share of the largest of more, rounded down.
+template <typename T>
+void unstretch(int bits, std::span<std::byte> bytes) {
+    const std::uint64_t highest = (std::uint64_t{1} << bits) - 1;
+    constexpr std::uint64_t kMost = std::numeric_limits<T>::max();
+    for (std::size_t at = 0; at + sizeof(T) <= bytes.size(); at += sizeof(T)) {
+        T value;
+        std::memcpy(&value, &bytes[at], sizeof(T));
+        value = T((value * highest + kMost - 1) / kMost);
+        std::memcpy(&bytes[at], &value, sizeof(T));
+    }
+}
+
+void unstretch(const OIIO::TypeDesc& type, int bits, std::span<std::byte> bytes) {
+    if (type == OIIO::TypeDesc::UINT8) unstretch<std::uint8_t>(bits, bytes);
+    if (type == OIIO::TypeDesc::UINT16) unstretch<std::uint16_t>(bits, bytes);
+    if (type == OIIO::TypeDesc::UINT32) unstretch<std::uint32_t>(bits, bytes);
+}
+
+// How many bits numbers have as they are stored, if OpenImageIO stretches them; else 0.
+int storedBits(const std::filesystem::path& file, const ImageSpec& spec,
+               const std::optional<StoredNumbers>& said) {
+    const int bits = said               ? said->bits
+                     : isTiffName(file) ? spec.get_int_attribute("oiio:BitsPerSample", 0)
+                                        : 0;
+    const bool isUnsigned = spec.format == OIIO::TypeDesc::UINT8 ||
+                            spec.format == OIIO::TypeDesc::UINT16 ||
+                            spec.format == OIIO::TypeDesc::UINT32;
+    return isUnsigned && bits > 0 && bits < int(8 * spec.format.size()) ? bits : 0;
+}
+
+}  // namespace
+
 ImagePages::ImagePages(const std::filesystem::path& file) {
-    if (isTiff(file)) {
+    if (isTiffName(file)) {
         tiff_ = walkTiff(file);
         return;
     }
+    if (const std::optional<StoredNumbers> said = storedNumbers(file)) isPalette_ = said->isPalette;
     ImageSpec spec;
     const auto input = openInput(file, nullptr, spec);
     while (input->seek_subimage(count_, 0)) ++count_;
     input->geterror();
 }
 
-ImageFile::ImageFile(const std::filesystem::path& file, const ImagePages& pages, int page)
+ImageFile::ImageFile(const std::filesystem::path& file, const ImagePages& pages, int page,
+                     Samples samples)
     : file_(file) {
+    const bool asNumbers = samples == Samples::kNumbers;
+    const std::optional<StoredNumbers> said = storedNumbers(file);
     if (pages.tiff()) {
-        proxy_ = std::make_unique<OnePageProxy>(file, *pages.tiff(),
-                                                pages.tiff()->pages.at(std::size_t(page)));
+        proxy_ = std::make_unique<PatchedFile>(file);
+        patchTiff(*pages.tiff(), pages.tiff()->pages.at(std::size_t(page)), asNumbers, *proxy_);
+    } else if (said && said->isPalette && asNumbers) {
+        proxy_ = std::make_unique<PatchedFile>(file);
+        for (const auto& [place, bytes] : said->asGreys) proxy_->patch(place, bytes);
     } else {
         page_ = page;
     }
@@ -177,6 +223,9 @@ ImageFile::ImageFile(const std::filesystem::path& file, const ImagePages& pages,
     if (page_ > 0) spec_ = input_->spec(page_);
     // What is stored counts, as it does for wider numbers, which OpenImageIO leaves alone.
     isInverted_ = pages.isWhiteZero(page) && spec_.format == OIIO::TypeDesc::UINT8;
+    // Colours of a palette are whole bytes.
+    const bool isColored = pages.isPalette(page) && !asNumbers;
+    if (samples != Samples::kShown && !isColored) bits_ = storedBits(file, spec_, said);
     isPgm_ = spec_.nchannels == 1 && lowerExtension(file) == ".pgm" && isPgm(file);
 }
 
@@ -193,9 +242,10 @@ bool ImageFile::readNative(int channels, void* to) {
         return true;
     }
     if (!readStored(channels, to)) return false;
-    if (!isInverted_) return true;
-    const std::span bytes(static_cast<std::byte*>(to), values);
-    for (std::byte& byte : bytes) byte = ~byte;
+    const std::span bytes(static_cast<std::byte*>(to), values * spec_.format.size());
+    if (isInverted_)
+        for (std::byte& byte : bytes) byte = ~byte;
+    if (bits_ > 0) unstretch(spec_.format, bits_, bytes);
     return true;
 }
 

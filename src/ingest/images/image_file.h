@@ -32,6 +32,10 @@ class ImagePages {
 
     int count() const { return tiff_ ? int(tiff_->pages.size()) : count_; }
     const std::optional<TiffPages>& tiff() const { return tiff_; }
+    /// Whether its numbers are those of a palette's colours.
+    bool isPalette(int page) const {
+        return tiff_ ? tiff_->pages[std::size_t(page)].paletteField != 0 : isPalette_;
+    }
     /// Whether smaller values are meant to be shown brighter.
     bool isWhiteZero(int page) const {
         return tiff_ && tiff_->pages[std::size_t(page)].whiteIsZero;
@@ -40,15 +44,24 @@ class ImagePages {
   private:
     std::optional<TiffPages> tiff_;
     int count_ = 1;
+    bool isPalette_ = false;
 };
 
-class OnePageProxy;
+/// What is read of a pixel.
+enum class Samples {
+    kShown,   ///< shares of what is white: numbers of 1 to 7 bits become ones of 8, and so on
+    kStored,  ///< numbers of few bits as they are stored
+    kNumbers  ///< the same, of a palette not the colours but their numbers
+};
+
+class PatchedFile;
 
 /// One page of an image file, open.
 class ImageFile {
   public:
     /// @throw Error(kInput) if OpenImageIO refuses it
-    ImageFile(const std::filesystem::path& file, const ImagePages& pages, int page);
+    ImageFile(const std::filesystem::path& file, const ImagePages& pages, int page,
+              Samples samples = Samples::kShown);
     ~ImageFile();
     ImageFile(const ImageFile&) = delete;
     ImageFile& operator=(const ImageFile&) = delete;
@@ -65,12 +78,13 @@ class ImageFile {
     bool readPixels(int channels, OIIO::TypeDesc type, void* to);
 
     std::filesystem::path file_;
-    std::unique_ptr<OnePageProxy> proxy_;  // used by input_
+    std::unique_ptr<PatchedFile> proxy_;  // used by input_
     std::unique_ptr<OIIO::ImageInput> input_;
     OIIO::ImageSpec spec_;
     int page_ = 0;  // as OpenImageIO counts
     bool isPgm_ = false;
     bool isInverted_ = false;  // by OpenImageIO
+    int bits_ = 0;             // of a number as it is stored, if OpenImageIO stretches it; else 0
 };
 
 }  // namespace deltasplat

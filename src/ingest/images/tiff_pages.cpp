@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <optional>
 #include <set>
@@ -13,16 +14,39 @@
 
 #include "deltasplat/error.h"
 #include "ingest/files/file_bytes.h"
+#include "ingest/images/image_claims.h"
+#include "memory.h"
 
 namespace deltasplat {
 namespace {
 
-constexpr int kWidth = 256, kHeight = 257, kBits = 258, kCompression = 259, kPhotometric = 262,
-              kStripPlaces = 273, kSamples = 277, kStripRows = 278, kStripBytes = 279,
-              kPlanar = 284, kTileWidth = 322, kTileHeight = 323, kTilePlaces = 324,
-              kTileBytes = 325;
+constexpr int kKind = 254, kOldKind = 255, kWidth = 256, kHeight = 257, kBits = 258,
+              kCompression = 259, kPhotometric = 262, kDescription = 270, kStripPlaces = 273,
+              kSamples = 277, kStripRows = 278, kStripBytes = 279, kAcross = 282, kDown = 283,
+              kPlanar = 284, kResolutionUnit = 296, kTileWidth = 322, kTileHeight = 323,
+              kTilePlaces = 324, kTileBytes = 325, kMetaMorph = 33629;
 constexpr std::uint64_t kUnpacked = 1, kSeparate = 2, kWhiteIsZero = 0, kBlackIsZero = 1,
-                        kYcbcr = 6;
+                        kPalette = 3, kYcbcr = 6;
+constexpr std::uint64_t kReducedOrMask = 1 | 4, kOldReduced = 2;
+constexpr int kText = 2, kShort = 3, kRatio = 5;
+// No description of a volume is longer.
+constexpr std::uint64_t kMostText = std::uint64_t{1} << 28;
+
+// How OpenImageIO names packings; those that are not here are as any other.
+const char* packingName(std::uint64_t compression) {
+    switch (compression) {
+        case kUnpacked:
+            return "none";
+        case 2:
+        case 3:
+        case 4:
+            return "ccitt";
+        case 50000:
+            return "zstd";
+        default:
+            return "";
+    }
+}
 
 // Bytes of one value of each type; 0 for types that there are none of.
 constexpr std::array<std::uint64_t, 19> kTypeBytes{0, 1, 1, 2, 4, 8, 1, 1, 2, 4,
@@ -111,8 +135,18 @@ class Walk {
                           readEntry(bytes, at, place + countBytes + at + 4 + width));
         }
         requirePixels(table);
-        pages_.pages.push_back({place, place + countBytes + last,
-                                valueOf(table, kPhotometric, kBlackIsZero) == kWhiteIsZero});
+        if (pages_.pages.empty()) describe(table);
+        const std::uint64_t photometric = valueOf(table, kPhotometric, kBlackIsZero);
+        TiffPage page;
+        page.table = place;
+        page.nextField = place + countBytes + last;
+        page.whiteIsZero = photometric == kWhiteIsZero;
+        page.isReduced = (valueOf(table, kKind, 0) & kReducedOrMask) != 0 ||
+                         valueOf(table, kOldKind, 0) == kOldReduced;
+        if (photometric == kPalette && table.at(kPhotometric).type == kShort)
+            page.paletteField = table.at(kPhotometric).place;
+        findPixels(table, page);
+        pages_.pages.push_back(page);
         return offset(bytes, last);
     }
 
@@ -159,6 +193,54 @@ class Walk {
         return value;
     }
 
+    // Numbers are one of two.
+    double ratioOf(const Table& table, int tag) const {
+        const auto found = table.find(tag);
+        if (found == table.end() || found->second.type != kRatio || found->second.count < 1)
+            return 0;
+        const std::string bytes = bytesAt(found->second.place, 8);
+        const auto below = double(number(bytes, 4, 4));
+        return below > 0 ? double(number(bytes, 0, 4)) / below : 0;
+    }
+
+    // Keeps what the first page says of all.
+    void describe(const Table& table) {
+        const auto text = table.find(kDescription);
+        if (text != table.end() && text->second.type == kText && text->second.count <= kMostText) {
+            pages_.description = bytesAt(text->second.place, text->second.count);
+            pages_.description.resize(std::strlen(pages_.description.c_str()));
+        }
+        pages_.samples = int(std::min<std::uint64_t>(valueOf(table, kSamples, 1), 0xffff));
+        pages_.pixelsPerUnit = {ratioOf(table, kAcross), ratioOf(table, kDown)};
+        pages_.resolutionUnit = int(std::min<std::uint64_t>(valueOf(table, kResolutionUnit, 2), 9));
+        const auto planes = table.find(kMetaMorph);
+        if (planes != table.end()) pages_.metaMorphPlanes = planes->second.count;
+    }
+
+    // Whether pixels lie in the file as they would in memory.
+    void findPixels(const Table& table, TiffPage& page) const {
+        const std::vector<std::uint64_t> bits = valuesOf(table, kBits);
+        const bool isWhole = !bits.empty() && bits[0] % 8 == 0 && bits[0] > 0 &&
+                             std::equal(bits.begin() + 1, bits.end(), bits.begin());
+        const std::uint64_t samples = valueOf(table, kSamples, 1);
+        const bool isTogether = samples == 1 || valueOf(table, kPlanar, 1) != kSeparate;
+        const std::vector<std::uint64_t> places = valuesOf(table, kStripPlaces);
+        const std::vector<std::uint64_t> lengths = valuesOf(table, kStripBytes);
+        if (!isWhole || !isTogether || table.contains(kTileWidth) || places.empty() ||
+            valueOf(table, kCompression, kUnpacked) != kUnpacked ||
+            (lengths.size() != places.size() && places.size() > 1))
+            return;
+        for (std::size_t i = 1; i < places.size(); ++i)
+            if (places[i] != places[i - 1] + lengths[i - 1]) return;
+        page.pixels = places[0];
+        std::uint64_t end = page.table > page.pixels ? page.table : file_.size();
+        for (const auto& [tag, entry] : table)
+            if (entry.place > page.pixels) end = std::min(end, entry.place);
+        page.roomBytes = end - page.pixels;
+        page.pixelBytes =
+            valueOf(table, kWidth, 0) * valueOf(table, kHeight, 0) * samples * (bits[0] / 8);
+    }
+
     // Strips are tiles as wide as the page.
     void requirePixels(const Table& table) const {
         const std::uint64_t width = lengthOf(table, kWidth, "a width");
@@ -187,14 +269,27 @@ class Walk {
         const double rowBits =
             double(columns) * double(valueOf(table, kBits, 1)) * (separate ? 1 : double(samples));
         const double rowBytes = plain ? std::ceil(rowBits / 8) : 0;
+        const double ratio = mostRatio(packingName(valueOf(table, kCompression, kUnpacked)));
+        double mostBytes = 0;
         const std::vector<std::uint64_t> lengths =
             valuesOf(table, tiles ? kTileBytes : kStripBytes);
         for (std::size_t i = 0; i < std::size_t(wanted); ++i) {
             const std::uint64_t row = i % std::size_t(across * down) / std::size_t(across) * rows;
             const double least = rowBytes * double(tiles ? rows : std::min(rows, height - row));
-            requirePart(tiles ? "a tile" : "a strip", places[i],
-                        i < lengths.size() ? std::optional(lengths[i]) : std::nullopt, least);
+            const auto length = i < lengths.size() ? std::optional(lengths[i]) : std::nullopt;
+            requirePart(tiles ? "a tile" : "a strip", places[i], length, least);
+            const std::uint64_t lines = tiles ? rows : std::min(rows, height - row);
+            const std::uint64_t packed = length.value_or(file_.size());
+            const double unpacked = std::ceil(rowBits / 8) * double(lines);
+            mostBytes = std::max(mostBytes, unpacked);
+            if (rowBytes == 0 && !isEnough(double(packed), ratio, unpacked)) {
+                refuse(page() + " with " + (tiles ? "a tile" : "a strip") + " of " +
+                           std::to_string(packed) + " bytes",
+                       "enough for " + std::to_string(columns) + "x" + std::to_string(lines) +
+                           " pixels");
+            }
         }
+        if (tiles) requireClaimedMemory(where_, mostBytes);
     }
 
     // libtiff works out the lengths where a page does not say them.

@@ -189,7 +189,7 @@ std::string RawLayout::expectedSize() const {
 void requireGeometry(const RawFormat& format) {
     const std::string most = numberText(kMostLength);
     for (int axis = 0; axis < 3; ++axis) {
-        const double spacing = format.spacing[axis];
+        const double spacing = format.spacing.value_or(glm::dvec3(1))[axis];
         if (spacing >= 1 / kMostLength && spacing <= kMostLength) continue;
         refuse("`spacing`", numberText(spacing),
                "three numbers from " + numberText(1 / kMostLength) + " to " + most);

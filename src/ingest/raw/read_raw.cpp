@@ -18,7 +18,7 @@ DenseSource openRaw(const std::filesystem::path& path, const RawFormat& format) 
     requireRawSize(file);
     DenseSource source = denseSourceOf(file);
     source.worldFromIndex =
-        glm::scale(glm::translate(glm::dmat4(1), format.origin), format.spacing);
+        glm::scale(glm::translate(glm::dmat4(1), format.origin), format.spacing.value_or(glm::dvec3(1)));
     return source;
 }
 
