@@ -31,6 +31,7 @@ foreach(name start modules)
 endforeach()
 deltasplat_script_test(preview preview.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/preview)
+deltasplat_script_test(odd_names odd_names.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/odd_names)
 deltasplat_script_test(batch batch.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/batch)
 # Grids of one file that would have one name are that file's failure, and nobody else's.
 deltasplat_cli_test(batch.grids_of_one_name EXIT 3

@@ -171,5 +171,20 @@ TEST_F(FindFiles, KnowsPatterns) {
     EXPECT_FALSE(isPattern(folder_ / "a[1.vdb"));
 }
 
+// A folder that is there as it is written is meant, and no other.
+TEST_F(FindFiles, TakesFoldersThatAreThereAsTheyAre) {
+    for (const char* name : {"[old]/a.vdb", "[old]/b.vdb", "o/a.vdb", "s/[1]/a.vdb", "s/1/a.vdb",
+                             "t/1/a.vdb", "a\\*b/c.vdb"})
+        put(name);
+    EXPECT_FALSE(isPattern(folder_ / "[old]/puff.####.vdb"));
+    EXPECT_TRUE(isPattern(folder_ / "[new]/puff.####.vdb"));
+    EXPECT_TRUE(isPattern(folder_ / "[old]/*.vdb"));
+    EXPECT_EQ(find("[old]/*.vdb"), (Names{":[old]/a.vdb", ":[old]/b.vdb"}));
+    EXPECT_EQ(find("\\[old\\]/*.vdb"), (Names{":[old]/a.vdb", ":[old]/b.vdb"}));
+    EXPECT_EQ(find("[o]/*.vdb"), (Names{"o:o/a.vdb"}));
+    EXPECT_EQ(find("*/[1]/*.vdb"), (Names{"s/[1]:s/[1]/a.vdb", "t/1:t/1/a.vdb"}));
+    EXPECT_EQ(find("a\\*b/*"), (Names{":a\\*b/c.vdb"}));
+}
+
 }  // namespace
 }  // namespace deltasplat

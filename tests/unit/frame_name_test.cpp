@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
+
+#include "unit/temp_folder.h"
 
 namespace deltasplat {
 namespace {
@@ -37,8 +41,48 @@ TEST(FrameName, CountsASignAsADigit) {
     EXPECT_EQ(at("s.$F.vdb", -5), "s.-5.vdb");
 }
 
-TEST(FrameName, FillsFoldersAsWell) {
+// Unless there is a folder of that very name.
+TEST(FrameName, FillsFoldersThatAreNotThere) {
+    const test::TempFolder folder;
+    const auto in = [&](const std::string& name) { return (folder / name).string(); };
     EXPECT_EQ(at("shot.##/a.####.vdb", 3), "shot.03/a.0003.vdb");
+    for (const std::string name : {"job@farm", "take #2", "100%done", "cost$F", "a\\#b"}) {
+        EXPECT_NE(at(in(name + "/a.##.vdb"), 3), in(name + "/a.03.vdb")) << name;
+        std::filesystem::create_directory(folder / name);
+        EXPECT_EQ(at(in(name + "/a.##.vdb"), 3), in(name + "/a.03.vdb")) << name;
+        EXPECT_EQ(at(in(name + "/new@/a.vdb"), 3), in(name + "/new3/a.vdb")) << name;
+        EXPECT_EQ(at(in(name + "/a.vdb"), 3), "no place") << name;
+    }
+    // In the folder of a frame as well.
+    std::filesystem::create_directories(folder / "f.03/take@1");
+    EXPECT_EQ(at(in("f.##/take@1/a.vdb"), 3), in("f.03/take@1/a.vdb"));
+    EXPECT_EQ(at(in("f.##/take@1/a.vdb"), 4), in("f.04/take41/a.vdb"));
+}
+
+TEST(FrameName, TellsOfFolders) {
+    const test::TempFolder folder;
+    std::filesystem::create_directory(folder / "is@there");
+    const auto folderOf = [](const std::string& name) { return FrameName::find(name)->folder(); };
+    EXPECT_EQ(folderOf("a/b.##.vdb"), "");
+    EXPECT_EQ(folderOf("a/b@c/d#e/b.##.vdb"), "a/b@c");
+    EXPECT_EQ(folderOf((folder / "is@there/b.##.vdb").string()), "");
+}
+
+TEST(FrameName, TakesWhatIsEscapedAsItIs) {
+    EXPECT_EQ(at("a\\@b.##.vdb", 3), "a@b.03.vdb");
+    EXPECT_EQ(at("a\\@b/\\#\\%04d\\$F.%d\\\\.vdb", 3), "a@b/#%04d$F.3\\.vdb");
+    EXPECT_EQ(at("a\\@b.vdb", 3), "no place");
+    EXPECT_EQ(at("a\\b.@.vdb", 3), "a\\b.3.vdb");
+}
+
+// A file that is there is no sequence.
+TEST(FrameName, LeavesInputsThatAreThereAlone) {
+    const test::TempFolder folder;
+    const std::string name = (folder / "a@b.#.vdb").string();
+    EXPECT_TRUE(FrameName::findInput(name));
+    std::ofstream(name) << "a";
+    EXPECT_FALSE(FrameName::findInput(name));
+    EXPECT_TRUE(FrameName::find(name));
 }
 
 TEST(FrameName, LeavesOthersAlone) {
@@ -60,6 +104,9 @@ TEST(FrameName, CountsNoSlices) {
     EXPECT_EQ(input("f$F2.slice.####.png"), "f03.slice.####.png");
     EXPECT_EQ(input("smoke.####.vdb"), "smoke.0003.vdb");
     EXPECT_EQ(at("picture.####.png", 3), "picture.0003.png");
+    // Who looks for slices knows escapes, too.
+    EXPECT_EQ(input("f\\@1.@/a\\#.$F.####.png"), "f@1.3/a\\#.3.####.png");
+    EXPECT_EQ(input("a\\#.$F.png"), "a#.3.png");
 }
 
 }  // namespace

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 
 #include "deltasplat/error.h"
+#include "unit/temp_folder.h"
 
 namespace deltasplat {
 namespace {
@@ -59,6 +61,17 @@ TEST(OutputName, MakesFileNamesOfGrids) {
 TEST(OutputName, KnowsBraces) {
     EXPECT_EQ(filled("{{{name}}}.png", "a.vdb"), "{a}.png");
     EXPECT_EQ(filled("{{x}}{name}.png", "a.vdb"), "{x}a.png");
+    EXPECT_EQ(filled("\\{x\\}{name}\\#\\@.png", "a.vdb"), "{x}a#@.png");
+    EXPECT_FALSE(hasPlaceholder("\\{name\\}.png"));
+}
+
+TEST(OutputName, TakesFoldersThatAreThereAsTheyAre) {
+    const test::TempFolder folder;
+    const auto in = [&](const std::string& name) { return (folder / name).string(); };
+    std::filesystem::create_directories(folder / "{x}/{name}");
+    EXPECT_EQ(filled(in("{x}/{name}/{name}.png"), "a.vdb"), in("{x}/{name}/a.png"));
+    EXPECT_EQ(filled(in("{x}/{dir}/{name}.png"), "a.vdb", "b"), in("{x}/b/a.png"));
+    EXPECT_FALSE(hasPlaceholder(folder / "{x}/{name}/a.png"));
 }
 
 TEST(OutputName, RefusesOthers) {

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "ingest/files/name_signs.h"
 #include "ingest/images/image_stack.h"
 
 namespace deltasplat {
@@ -97,13 +98,10 @@ bool hasWildcards(std::string_view text) {
     return false;
 }
 
-std::string withoutEscapes(const std::string& text) {
-    std::string plain;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        if (text[i] == '\\' && i + 1 < text.size()) ++i;
-        plain += text[i];
-    }
-    return plain;
+// Whether a name with wildcards is that of a file or folder which is there.
+bool isNamed(const fs::path& folder, const std::string& name) {
+    std::error_code ignored;
+    return name != kAnyFolders && fs::exists(folder / name, ignored);
 }
 
 // The names between slashes, the last one empty if the pattern ends with one.
@@ -140,8 +138,8 @@ class Search {
     FoundFiles run() {
         fs::path folder = parts_[0].empty() ? "/" : "";
         std::size_t part = parts_[0].empty() ? 1 : 0;
-        while (part + 1 < parts_.size() && !hasWildcards(parts_[part]))
-            folder /= withoutEscapes(parts_[part++]);
+        while (part + 1 < parts_.size() && !isWild(folder, parts_[part]))
+            folder /= plain(folder, parts_[part++]);
         look(folder, {}, part);
         FoundFiles result;
         result.base = folder;
@@ -155,6 +153,14 @@ class Search {
 
   private:
     using Entries = std::vector<fs::directory_entry>;
+
+    // What is there by the very name is meant.
+    static bool isWild(const fs::path& folder, const std::string& wanted) {
+        return hasWildcards(wanted) && !isNamed(folder, wanted);
+    }
+    static std::string plain(const fs::path& folder, const std::string& wanted) {
+        return hasSigns(wanted) && isNamed(folder, wanted) ? wanted : withoutEscapes(wanted);
+    }
 
     // Finds what fits the parts from this one on.
     // @param within  the folder, relative to that before the first wildcard
@@ -171,8 +177,8 @@ class Search {
                 if (!isOther && entry.is_directory(ignored))
                     look(folder / name, within / name, part);
             }
-        } else if (!hasWildcards(wanted)) {
-            const std::string name = withoutEscapes(wanted);
+        } else if (!isWild(folder, wanted)) {
+            const std::string name = plain(folder, wanted);
             if (isLast)
                 takeNamed(folder, name, within);
             else
@@ -239,9 +245,12 @@ class Search {
 }  // namespace
 
 bool isPattern(const fs::path& name) {
-    if (!hasWildcards(name.string())) return false;
     std::error_code ignored;
-    return !fs::exists(fs::symlink_status(name, ignored));
+    if (!hasWildcards(name.string()) || fs::exists(fs::symlink_status(name, ignored))) return false;
+    const std::vector<NamePart> parts = partsOfName(name.string());
+    return std::any_of(parts.begin(), parts.end(), [](const NamePart& part) {
+        return !part.isLiteral && hasWildcards(part.text);
+    });
 }
 
 bool fitsPattern(std::string_view name, std::string_view pattern) {

@@ -10,7 +10,8 @@
 
 namespace deltasplat {
 
-/// Whether a name is a pattern: has `*`, `?` or `[...]`, and is not that of a file or folder.
+/// Whether a name is a pattern: has `*`, `?` or `[...]`, and is not that of a file or folder; those
+/// of folders that are there as they are written do not count.
 bool isPattern(const std::filesystem::path& name);
 
 /// Whether a name without folders fits: `*` stands for any characters, `?` for one (of UTF-8),
@@ -31,7 +32,8 @@ struct FoundFiles {
     std::vector<std::pair<std::filesystem::path, std::string>> unread;
 };
 
-/// Finds all files that fit, where `**` stands for any folders, or none; a pattern that ends with a
+/// Finds all files that fit. What is there by the very name that stands between slashes is meant
+/// by it alone. Otherwise `**` stands for any folders, or none; a pattern that ends with a
 /// slash finds folders. Nothing is found by `*`, `?` or `[...]` whose name begins with a dot,
 /// unless the pattern does so as well there, and no temporary file of this program's, nor what is
 /// neither file nor folder. `**` does not follow links.

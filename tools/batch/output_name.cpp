@@ -9,6 +9,7 @@
 
 #include "deltasplat/error.h"
 #include "ingest/files/file_name.h"
+#include "ingest/files/name_signs.h"
 
 namespace deltasplat {
 namespace {
@@ -36,6 +37,14 @@ std::string fileText(std::string name) {
     return name;
 }
 
+// A path with 0 in place of signs that stand for themselves, 1 in that of whole folders.
+std::string signsOf(const std::string& path) {
+    std::string signs;
+    for (const NamePart& part : partsOfName(path))
+        signs += part.isLiteral ? std::string(part.text.size(), '\1') : maskedEscapes(part.text);
+    return signs;
+}
+
 }  // namespace
 
 InputParts partsOfInput(const std::filesystem::path& file, const std::filesystem::path& folder) {
@@ -50,7 +59,7 @@ InputParts partsOfInput(const std::filesystem::path& file, const std::filesystem
 }
 
 bool hasPlaceholder(const std::filesystem::path& file) {
-    const std::string text = file.string();
+    const std::string text = signsOf(file.string());
     return std::any_of(kPlaces.begin(), kPlaces.end(), [&](std::string_view place) {
         return text.find("{" + std::string(place) + "}") != std::string::npos;
     });
@@ -61,15 +70,18 @@ OutputName::OutputName(std::string option, const std::filesystem::path& file)
     const auto refuse = [&](const std::string& got) {
         throw Error(ErrorCode::kUsage, gotExpected(option_, got, kKnown));
     };
+    const std::string signs = signsOf(file_);
     std::string text;
     bool hasAny = false;
     for (std::size_t i = 0; i < file_.size(); ++i) {
-        if (file_.compare(i, 2, "{{") == 0 || file_.compare(i, 2, "}}") == 0) {
-            text += file_[i++];
-        } else if (file_[i] != '{') {
+        const bool isEscaped = signs[i] == '\0' && isEscape(file_, i);
+        if (isEscaped || signs.compare(i, 2, "{{") == 0 || signs.compare(i, 2, "}}") == 0) {
+            text += file_[isEscaped ? i + 1 : i];
+            ++i;
+        } else if (signs[i] != '{') {
             text += file_[i];
         } else {
-            const std::size_t end = file_.find('}', i);
+            const std::size_t end = signs.find('}', i);
             if (end == std::string::npos) refuse("{ without } (a brace by itself is {{)");
             const std::string place = file_.substr(i + 1, end - i - 1);
             if (!isKnown(place)) refuse("{" + place + "} (a brace by itself is {{)");

@@ -22,7 +22,7 @@ InputParts partsOfInput(const std::filesystem::path& file, const std::filesystem
 bool hasPlaceholder(const std::filesystem::path& file);
 
 /// A file name with `{name}`, `{dir}`, `{frame}` or `{grid}` where these parts of an input stand;
-/// `{{` and `}}` are braces.
+/// `{{`, `}}` and what follows a `\` are braces, as are those of a folder that is there.
 class OutputName {
   public:
     /// @param option  what gives the name, for messages

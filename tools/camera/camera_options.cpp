@@ -6,6 +6,7 @@
 #include <string>
 
 #include "deltasplat/error.h"
+#include "ingest/files/name_signs.h"
 #include "number_text.h"
 #include "options/command_line.h"
 #include "options/file_and_name.h"
@@ -140,10 +141,11 @@ void applyCamera(const CLI::App& app, const FrameChoice& choiceOfFrames, Picture
     for (const char* other : kPlaces) requireOnce(app, "--camera", other);
     for (const char* other : kLenses) requireOnce(app, "--camera", other);
 
-    const std::optional<FrameName> name = FrameName::find(choice.file);
+    const std::optional<FrameName> name = cameraFiles(options);
     if (name && !frames.empty()) {
         readEach(*name, choiceOfFrames, choice, listener);
     } else {
+        choice.file = plainInput(choice.file);
         choice.motion = readOne(choice.file, listener);
     }
     if (frames.empty() && choice.motion.frames.size() > 1)
@@ -162,6 +164,12 @@ void applyCamera(const CLI::App& app, const FrameChoice& choiceOfFrames, Picture
     const auto isRead = [&](int frame) { return !choice.unread.contains(frame); };
     const auto first = std::find_if(frames.begin(), frames.end(), isRead);
     camera = cameraAt(options, first == frames.end() ? std::nullopt : std::optional(*first));
+}
+
+std::optional<FrameName> cameraFiles(const PictureOptions& options) {
+    const std::filesystem::path& file = options.camera.file;
+    if (!hasSigns(file.string()) || findFileAndName("--camera", file)) return {};
+    return FrameName::find(file);
 }
 
 std::filesystem::path cameraFile(const PictureOptions& options) {

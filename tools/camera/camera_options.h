@@ -20,6 +20,10 @@ void addCameraFileOptions(CLI::App& app, PictureOptions& options);
 void applyCamera(const CLI::App& app, const FrameChoice& frames, PictureOptions& options,
                  const Listener& listener);
 
+/// Returns the files of a camera that has one for each frame; nothing if all have the one of that
+/// very name, or a part of it.
+std::optional<FrameName> cameraFiles(const PictureOptions& options);
+
 /// Returns the file that a camera is read from; of several the name that they have in common. Empty
 /// without --camera and --poses.
 std::filesystem::path cameraFile(const PictureOptions& options);

@@ -13,6 +13,7 @@
 #include "conversion/conversion_files.h"
 #include "deltasplat/threads.h"
 #include "ingest/files/file_name.h"
+#include "ingest/files/name_signs.h"
 #include "memory.h"
 #include "modules/load_early.h"
 #include "output_files.h"
@@ -59,7 +60,7 @@ ConversionStats convertFrames(const ConversionFiles& files, const FrameChoice& c
     std::optional<FrameName> stats;
     if (!files.stats.empty()) stats = frameNameOf(choice, "--stats", files.stats);
     const std::vector<FrameFiles> asked =
-        filesOfFrames(choice, files.input, false, "OUTPUT", files.output);
+        filesOfFrames(choice, files.input, false, "OUTPUT", files.output, listener);
     requireOwnOutputs("OUTPUT", asked, {}, "");
     const std::vector<FrameFiles> frames =
         framesToMake(withInputs(asked, choice.missing, listener), choice, stats);
@@ -99,7 +100,7 @@ void writeConverted(const ConversionFiles& files, std::vector<Volume> volumes,
 void checkFirstOutput(const ConversionFiles& files, const FrameChoice& frames,
                       const std::function<void(const std::filesystem::path& output)>& check) {
     const std::optional<FrameName> name = FrameName::find(files.output);
-    if (!frames.asked() || !name) return check(files.output);
+    if (!frames.asked() || !name) return check(plainName(files.output));
     const std::filesystem::path first = name->at(frames.frames.front());
     // Made again for each frame that has something to write.
     OutputFolders folders;
@@ -114,10 +115,10 @@ void addConversionOptions(CLI::App& app, const std::string& what, ConversionFile
     addFrameOptions(app, frames, false);
 }
 
-ConversionStats runConversion(const CLI::App& app, const ConversionFiles& files,
-                              const FrameChoice& frames, const Session& session,
-                              const Convert& convert) {
-    requireFramesOf(app, frames, files.input, files.output);
+ConversionStats runConversion(const CLI::App& app, ConversionFiles files, const FrameChoice& frames,
+                              const Session& session, const Convert& convert) {
+    settleNames(app, frames, files.input, files.output);
+    if (!frames.asked()) files.stats = plainName(files.stats);
     if (frames.asked() && !files.stats.empty()) frameNameOf(frames, "--stats", files.stats);
     const std::jthread loading = loadEarly(files.input);
     ConversionStats stats;

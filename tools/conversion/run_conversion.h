@@ -41,8 +41,7 @@ void writeConverted(const ConversionFiles& files, std::vector<Volume> volumes,
 /// Converts a volume, or those of all frames, several at once; none over a file that it is made of.
 /// @return what came of all together
 /// @throw as checkConversionFiles and runFrames
-ConversionStats runConversion(const CLI::App& app, const ConversionFiles& files,
-                              const FrameChoice& frames, const Session& session,
-                              const Convert& convert);
+ConversionStats runConversion(const CLI::App& app, ConversionFiles files, const FrameChoice& frames,
+                              const Session& session, const Convert& convert);
 
 }  // namespace deltasplat

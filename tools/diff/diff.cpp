@@ -229,8 +229,8 @@ Verdict compareOnce(const CLI::App& app, const DiffOptions& options, const Sessi
 // The files of all frames: one of the two may be the same for all.
 std::vector<FrameDiff> framesOf(const DiffOptions& options, const Listener& listener) {
     const auto filesOf = [&](const std::string& option, const std::filesystem::path& file) {
-        return withInputs(inputsOfFrames(options.frames, option, file), options.frames.missing,
-                          listener);
+        return withInputs(inputsOfFrames(options.frames, option, file, listener),
+                          options.frames.missing, listener);
     };
     const bool isOfA = FrameName::findInput(options.a).has_value();
     const bool isOfB = isOfA && FrameName::findInput(options.b).has_value();
@@ -293,14 +293,14 @@ Verdict compareFrames(const CLI::App& app, const DiffOptions& options, const Ses
     return worst;
 }
 
-Verdict runDiff(const CLI::App& app, const DiffOptions& options, const Session& session) {
+Verdict runDiff(const CLI::App& app, DiffOptions options, const Session& session) {
     // Most grids of a .vdb need no library.
     std::vector<std::jthread> loading;
     for (const std::filesystem::path& file : {options.a, options.b})
         if (!isVdb(file)) loading.push_back(loadEarly(file));
+    for (std::filesystem::path* const file : {&options.a, &options.b})
+        settleNames(app, options.frames, *file);
     if (options.frames.asked()) return compareFrames(app, options, session);
-    for (const std::filesystem::path& file : {options.a, options.b})
-        requireFramesOf(app, options.frames, file);
     return compareOnce(app, options, session);
 }
 

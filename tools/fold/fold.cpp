@@ -9,6 +9,7 @@
 #include "batch/file_pattern.h"
 #include "deltasplat/error.h"
 #include "deltasplat/slab_part.h"
+#include "ingest/files/name_signs.h"
 #include "listener.h"
 #include "listener_part.h"
 #include "memory.h"
@@ -119,7 +120,7 @@ Files partsOf(const FoldCommand& asked) {
     Files parts;
     for (const std::string& name : asked.parts) {
         if (!isPattern(name)) {
-            parts.emplace_back(name);
+            parts.push_back(plainInput(name));
             continue;
         }
         const FoundFiles found = findFiles(name, {});
@@ -133,6 +134,7 @@ Files partsOf(const FoldCommand& asked) {
 
 void runFold(const CLI::App& app, const FoldCommand& asked, const Session& session) {
     RenderCommand command = asked.picture;
+    command.output = plainName(command.output);
     requireArgument(!command.output.empty(), "--output", "FILE (see 'deltasplat fold --help')");
     imageFormatOf(command.output);
     const Files parts = partsOf(asked);

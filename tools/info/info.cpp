@@ -194,13 +194,16 @@ void declareOptions(CLI::App& app, InfoOptions& options) {
 
 // The same with the files of frames in place of names that stand for them.
 InfoOptions withFrames(const CLI::App& app, InfoOptions options, const Session& session) {
-    for (const std::string& input : options.inputs) {
-        requireFramesOf(app, options.frames, input);
+    for (std::string& input : options.inputs) {
+        std::filesystem::path file = input;
+        settleNames(app, options.frames, file);
+        input = file.string();
         if (!options.frames.asked()) continue;
-        const std::vector<FrameFiles> frames = inputsOfFrames(options.frames, "INPUT", input);
         ProgressDisplay display(session.common);
-        for (const FrameFiles& frame :
-             withInputs(frames, options.frames.missing, display.stage(0, 0)))
+        const Listener listener = display.stage(0, 0);
+        const std::vector<FrameFiles> frames =
+            inputsOfFrames(options.frames, "INPUT", file, listener);
+        for (const FrameFiles& frame : withInputs(frames, options.frames.missing, listener))
             options.files.push_back(frame);
     }
     if (!options.frames.asked()) return options;
@@ -210,7 +213,9 @@ InfoOptions withFrames(const CLI::App& app, InfoOptions options, const Session& 
 }
 
 void runInfo(const CLI::App& app, const InfoOptions& asked, const Session& session) {
-    const InfoOptions options = withFrames(app, asked, session);
+    InfoOptions options = withFrames(app, asked, session);
+    if (!options.read.paletteNumbers && isForLabels(options.transferFunction))
+        options.read.paletteNumbers = true;
     if (options.list) return listInputs(app, options, session);
     if (!options.plot.empty()) {
         checkDrawingFile(options.plot);

@@ -14,6 +14,7 @@
 #include "camera/camera_options.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
+#include "ingest/files/name_signs.h"
 #include "listener_part.h"
 #include "memory.h"
 #include "options/file_and_name.h"
@@ -87,7 +88,7 @@ void showAll(const FrameFiles& files, RenderCommand& command) {
 RenderCommand commandOf(const RenderCommand& command, const FrameFiles& files,
                         const std::optional<FrameName>& stats) {
     RenderCommand frame = command;
-    const std::optional<FrameName> camera = FrameName::find(command.picture.camera.file);
+    const std::optional<FrameName> camera = cameraFiles(command.picture);
     if (camera) frame.picture.camera.file = camera->at(files.frame);
     // One without a file is black.
     frame.input.clear();
@@ -265,8 +266,8 @@ RenderCommand fixedTo(const SequenceLook& look, RenderCommand command) {
     if (!options.optics.unitDistance && look.smallestVoxelWorld() > 0)
         options.optics.unitDistance = look.smallestVoxelWorld();
     fixCamera(look.seen(), command.turntable, options.camera);
-    const bool cameraTurns = command.turntable || cameraMoves(command.picture) ||
-                             FrameName::find(command.picture.camera.file);
+    const bool cameraTurns =
+        command.turntable || cameraMoves(command.picture) || cameraFiles(command.picture);
     const bool showOne = !FrameName::findInput(command.input) && !command.scene.moves();
     if (cameraTurns || showOne) command.picture.join = joinOfMany(command.picture);
     return command;
@@ -298,18 +299,20 @@ void warnOfOwnRanges(const RenderCommand& command, const Listener& listener) {
 }
 
 // The files of all frames; if pictures go elsewhere, all have the same output.
-std::vector<FrameFiles> filesFor(const RenderCommand& command, bool areWritten) {
+std::vector<FrameFiles> filesFor(const RenderCommand& command, bool areWritten,
+                                 const Listener& listener) {
     const bool mayStand = command.turntable.has_value() || cameraMoves(command.picture) ||
                           command.scene.moves() || hasFunctions(command);
     if (areWritten)
-        return filesOfFrames(command.frames, command.input, mayStand, "--output", command.output);
+        return filesOfFrames(command.frames, command.input, mayStand, "--output", command.output,
+                             listener);
     std::vector<FrameFiles> files;
     if (mayStand && !FrameName::findInput(command.input)) {
         for (const int frame : command.frames.frames)
             files.push_back({frame, command.input, command.output});
         return files;
     }
-    files = inputsOfFrames(command.frames, "INPUT", command.input);
+    files = inputsOfFrames(command.frames, "INPUT", command.input, listener);
     for (FrameFiles& one : files) one.output = command.output;
     return files;
 }
@@ -410,8 +413,9 @@ void applySequence(const CLI::App& app, RenderCommand& command) {
         useFrames("--turntable", std::size_t(*command.turntable), command.frames);
     if (hasPoses && !command.frames.asked())
         useFrames("--poses", readPoses(choice.posesFile).size(), command.frames);
-    requireFramesOf(app, command.frames, command.input, command.output);
+    settleNames(app, command.frames, command.input, command.output);
     if (!command.frames.asked()) {
+        command.stats = plainName(command.stats);
         if (command.firstPass.empty() || command.slabs) return;
         refuseWithoutFrames("--first-pass");
     }
@@ -422,8 +426,8 @@ void applySequence(const CLI::App& app, RenderCommand& command) {
 void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Listener& listener,
                     const MakePicture& makePicture) {
     interruptBetweenFiles();
-    const std::vector<FrameFiles> all =
-        withScene(command.scene, filesFor(command, sinks.areWritten() && !isLookAlone(command)));
+    const std::vector<FrameFiles> all = withScene(
+        command.scene, filesFor(command, sinks.areWritten() && !isLookAlone(command), listener));
     const std::optional<FrameName> stats = FrameName::find(command.stats);
     requireOwnOutputs("--output", all, command.firstPass, "the first pass");
     if (stats) {

@@ -6,6 +6,7 @@
 
 #include "deltasplat/error.h"
 #include "dims_text.h"
+#include "ingest/files/name_signs.h"
 #include "memory.h"
 #include "render/color_options.h"
 #include "render/render_modes.h"
@@ -22,7 +23,7 @@ namespace {
     throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
 }
 
-void checkSheet(const CLI::App& app, const RenderCommand& command, std::size_t pictures) {
+void checkSheet(const CLI::App& app, RenderCommand& command, std::size_t pictures) {
     const glm::ivec2 cells = *command.contactSheet;
     const std::size_t count = pictures > 0 ? pictures : command.frames.frames.size();
     const auto room = std::size_t(cells.x) * std::size_t(cells.y);
@@ -34,6 +35,7 @@ void checkSheet(const CLI::App& app, const RenderCommand& command, std::size_t p
     }
     if (FrameName::find(command.output))
         refuse("--output", command.output.string() + " with --contact-sheet", "one file");
+    command.output = plainName(command.output);
     for (const char* option :
          {"--aov", "--deep", "--stats", "--region", "--overscan", "--autocrop", "--progressive"}) {
         if (isGiven(app, option))

@@ -5,9 +5,13 @@
 #include <array>
 #include <cctype>
 #include <cstdio>
+#include <system_error>
+#include <utility>
 
 #include "ingest/files/input_files.h"
 #include "ingest/files/input_kind.h"
+#include "ingest/files/name_signs.h"
+#include "ingest/images/image_stack.h"
 
 namespace deltasplat {
 namespace {
@@ -84,42 +88,83 @@ std::string numberText(int frame, int digits) {
 
 }  // namespace
 
-// @param stackBegin  where the name of an image stack begins
-std::optional<FrameName> FrameName::find(const std::string& text, std::size_t stackBegin) {
-    FrameName name;
+std::string FrameName::Part::at(int frame) const {
+    std::string filled;
+    for (const Place& place : places) filled += place.before + numberText(frame, place.digits);
+    return filled + after;
+}
+
+// @param isOfStack  whether it is the name of an image stack, which keeps its backslashes
+FrameName::Part FrameName::parse(const std::string& text, bool isOfStack) {
+    Part part;
+    part.text = text;
     for (std::size_t i = 0; i < text.size();) {
-        const Found found = placeAt(text, i, i >= stackBegin);
+        if (isEscape(text, i)) {
+            part.after += text.substr(isOfStack ? i : i + 1, isOfStack ? 2 : 1);
+            i += 2;
+            continue;
+        }
+        const Found found = placeAt(text, i, isOfStack);
         if (found.digits == 0) {
-            name.after_ += text.substr(i, found.length);
+            part.after += text.substr(i, found.length);
         } else {
-            name.places_.push_back({std::move(name.after_), found.digits});
-            name.after_.clear();
+            part.places.push_back({std::exchange(part.after, {}), found.digits});
         }
         i += found.length;
     }
-    if (name.places_.empty()) return {};
+    return part;
+}
+
+std::optional<FrameName> FrameName::find(const std::string& text, bool isStack) {
+    FrameName name;
+    name.isStack_ = isStack;
+    std::string before;
+    bool hasPlaces = false;
+    for (const NamePart& named : partsOfName(text)) {
+        Part part{named.text, named.isFolder, {}, named.text};
+        if (!named.isLiteral) part = parse(named.text, isStack && !named.isFolder);
+        part.isFolder = named.isFolder;
+        before += named.text;
+        const bool isFirst = named.isFolder && !part.places.empty() && name.folder_.empty();
+        if (isFirst) name.folder_ = before.substr(0, before.size() - 1);
+        hasPlaces = hasPlaces || !part.places.empty();
+        name.parts_.push_back(std::move(part));
+    }
+    if (!hasPlaces) return {};
     return name;
 }
 
 std::optional<FrameName> FrameName::find(const std::filesystem::path& file) {
-    return find(file.string(), std::string::npos);
+    return find(file.string(), false);
 }
 
 std::optional<FrameName> FrameName::findInput(const std::filesystem::path& input) {
     const std::string text = input.string();
-    return find(text, isImageName(input) ? text.size() - input.filename().string().size()
-                                         : std::string::npos);
+    std::error_code ignored;
+    if (!hasSigns(text) || std::filesystem::exists(input, ignored)) return {};
+    return find(text, isImageName(input));
 }
 
 std::filesystem::path FrameName::at(int frame) const {
     std::string text;
-    for (const Place& place : places_) text += place.before + numberText(frame, place.digits);
-    return text + after_;
+    bool moves = false;
+    for (const Part& part : parts_) {
+        // In a folder of this frame there may be one of that very name.
+        const bool isLiteral =
+            moves && part.isFolder && !part.places.empty() && isFolderThere(text + part.text);
+        std::string filled = isLiteral ? part.text : part.at(frame);
+        if (!part.isFolder && isStack_ && !stackPattern(filled)) filled = withoutEscapes(filled);
+        text += filled;
+        moves = moves || !part.places.empty();
+    }
+    return text;
 }
 
 std::filesystem::path FrameName::inputAt(int frame) const {
     std::filesystem::path file = at(frame);
-    const auto folder = std::filesystem::path(places_.front().before + "#").parent_path();
+    std::string fixed;  // before the first place
+    for (std::size_t i = 0; parts_[i].places.empty(); ++i) fixed += parts_[i].after;
+    const auto folder = std::filesystem::path(fixed + "#").parent_path();
     if (file.parent_path() != folder) requireFoundIn(folder, file);
     return file;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "deltasplat/error.h"
+#include "ingest/files/name_signs.h"
 #include "options/command_line.h"
 #include "sequence/frame_list.h"
 #include "sequence/frame_name.h"
@@ -28,6 +29,23 @@ constexpr const char* kFrameName = "a name with ####, %04d, @ or $F4 for the num
                              const std::filesystem::path& name) {
     throw Error(ErrorCode::kUsage,
                 gotExpected(option, name.string() + " with " + choice.askedBy, kFrameName));
+}
+
+void sayFolder(const FrameName& name, const std::string& option, const Listener& listener) {
+    if (name.folder().empty()) return;
+    listener.warn(option + ": the frame's number stands in the name of the folder " +
+                  name.folder() + ", for there is none of that very name");
+}
+
+void refuseOptionsOfFrames(const CLI::App& app) {
+    for (const char* option : {"--missing", "--keep-going", "--skip-existing", "--update"}) {
+        if (app.get_option_no_throw(option) && isGiven(app, option)) refuseWithoutFrames(option);
+    }
+}
+
+[[noreturn]] void refuseAlone(const std::string& option, const std::filesystem::path& file) {
+    throw Error(ErrorCode::kUsage, gotExpected(option, file.string() + " without --frames",
+                                               "--frames with it, as in --frames 1-100"));
 }
 
 }  // namespace
@@ -84,9 +102,11 @@ void addFrameList(CLI::App& app, FrameChoice& choice) {
 }
 
 std::vector<FrameFiles> inputsOfFrames(const FrameChoice& choice, const std::string& option,
-                                       const std::filesystem::path& input) {
+                                       const std::filesystem::path& input,
+                                       const Listener& listener) {
     const std::optional<FrameName> name = FrameName::findInput(input);
     if (!name) refuseName(choice, option, input);
+    sayFolder(*name, option, listener);
     std::vector<FrameFiles> files;
     for (const int frame : choice.frames) files.push_back({frame, name->inputAt(frame), {}});
     return files;
@@ -94,10 +114,13 @@ std::vector<FrameFiles> inputsOfFrames(const FrameChoice& choice, const std::str
 
 std::vector<FrameFiles> filesOfFrames(const FrameChoice& choice, const std::filesystem::path& input,
                                       bool mayStand, const std::string& outputOption,
-                                      const std::filesystem::path& output) {
+                                      const std::filesystem::path& output,
+                                      const Listener& listener) {
     const std::optional<FrameName> inputName = FrameName::findInput(input);
     if (!inputName && !mayStand) refuseName(choice, "INPUT", input);
     const FrameName outputName = frameNameOf(choice, outputOption, output);
+    if (inputName) sayFolder(*inputName, "INPUT", listener);
+    sayFolder(outputName, outputOption, listener);
     std::vector<FrameFiles> files;
     std::map<std::filesystem::path, int> outputs;
     for (const int frame : choice.frames) {
@@ -114,24 +137,25 @@ std::vector<FrameFiles> filesOfFrames(const FrameChoice& choice, const std::file
     return files;
 }
 
-void requireFramesOf(const CLI::App& app, const FrameChoice& choice,
-                     const std::filesystem::path& input, const std::filesystem::path& output) {
-    if (choice.asked()) return;
-    for (const char* option : {"--missing", "--keep-going", "--skip-existing", "--update"}) {
-        if (app.get_option_no_throw(option) && isGiven(app, option)) refuseWithoutFrames(option);
+void settleNames(const CLI::App& app, const FrameChoice& choice, std::filesystem::path& input) {
+    const bool hasPlace = FrameName::findInput(input).has_value();
+    if (!choice.asked()) {
+        refuseOptionsOfFrames(app);
+        if (hasPlace) refuseAlone("INPUT", input);
     }
-    const auto refuse = [](const std::string& option, const std::filesystem::path& file) {
-        throw Error(ErrorCode::kUsage, gotExpected(option, file.string() + " without --frames",
-                                                   "--frames with it, as in --frames 1-100"));
-    };
-    std::error_code ignored;
-    if (FrameName::findInput(input) && !std::filesystem::exists(input, ignored))
-        refuse("INPUT", input);
+    if (!hasPlace) input = plainInput(input);
+}
+
+void settleNames(const CLI::App& app, const FrameChoice& choice, std::filesystem::path& input,
+                 std::filesystem::path& output) {
+    settleNames(app, choice, input);
+    if (choice.asked()) return;
     // A single # or @ may be just a letter.
-    const std::string name = output.filename().string();
-    const auto holds = [&](const char* place) { return name.find(place) != std::string::npos; };
+    const std::string signs = maskedEscapes(output.filename().string());
+    const auto holds = [&](const char* place) { return signs.find(place) != std::string::npos; };
     if (holds("##") || holds("%0") || holds("$F"))
-        refuse(app.get_option_no_throw("--output") ? "--output" : "OUTPUT", output);
+        refuseAlone(app.get_option_no_throw("--output") ? "--output" : "OUTPUT", output);
+    output = plainName(output);
 }
 
 }  // namespace deltasplat

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "deltasplat/progress.h"
 #include "sequence/frame_name.h"
 
 namespace deltasplat {
@@ -45,13 +46,15 @@ struct FrameFiles {
     std::string name = {};  ///< for messages; empty: "frame" and its number
 };
 
-/// Returns the files of all frames that are asked for, in their order.
+/// Returns the files of all frames that are asked for, in their order. Says where a number stands
+/// in the name of a folder.
 /// @param outputOption  what names the output, for messages
 /// @throw Error(kUsage) unless input and output both have a place for the frame's number, which
 ///        `mayStand` lets the input do without; or if two frames have the same output
 std::vector<FrameFiles> filesOfFrames(const FrameChoice& choice, const std::filesystem::path& input,
                                       bool mayStand, const std::string& outputOption,
-                                      const std::filesystem::path& output);
+                                      const std::filesystem::path& output,
+                                      const Listener& listener);
 
 /// Returns a name with a place for the frame's number.
 /// @throw Error(kUsage) naming the option, if it has none
@@ -61,17 +64,21 @@ FrameName frameNameOf(const FrameChoice& choice, const std::string& option,
 /// @throw Error(kUsage) always: the option is given without --frames
 [[noreturn]] void refuseWithoutFrames(const std::string& option);
 
-/// Returns the file of each frame that is asked for, of the input alone.
+/// Returns the file of each frame that is asked for, of the input alone. Says where a number stands
+/// in the name of a folder.
 /// @param option  what names it, for messages
 /// @throw Error(kUsage) if it has no place for a frame's number
 std::vector<FrameFiles> inputsOfFrames(const FrameChoice& choice, const std::string& option,
-                                       const std::filesystem::path& input);
+                                       const std::filesystem::path& input,
+                                       const Listener& listener);
 
-/// Refuses names with a place for a frame's number if there is no such file and no frames are asked
-/// for, and options that frames alone have.
-/// @param output  empty: none
+/// Makes signs stand for themselves in names without a place for a frame's number. Where no frames
+/// are asked for, refuses names with one, if there is no such file, and options that frames alone
+/// have.
 /// @throw Error(kUsage)
-void requireFramesOf(const CLI::App& app, const FrameChoice& choice,
-                     const std::filesystem::path& input, const std::filesystem::path& output = {});
+void settleNames(const CLI::App& app, const FrameChoice& choice, std::filesystem::path& input);
+/// @param output  empty: none
+void settleNames(const CLI::App& app, const FrameChoice& choice, std::filesystem::path& input,
+                 std::filesystem::path& output);
 
 }  // namespace deltasplat

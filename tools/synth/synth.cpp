@@ -6,6 +6,7 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/synth/write_analytic.h"
+#include "ingest/files/name_signs.h"
 #include "listener.h"
 #include "lower_case.h"
 #include "number_text.h"
@@ -87,7 +88,8 @@ void warnOfUnusedOptions(const CLI::App& app, const SynthOptions& options,
         display.warn("--spacing: has no effect without a .vdb output");
 }
 
-void runSynth(const CLI::App& app, const SynthOptions& options, const Session& session) {
+void runSynth(const CLI::App& app, SynthOptions options, const Session& session) {
+    options.output = plainName(options.output);
     if (options.name.empty()) {
         std::string list;
         for (const std::string& name : analyticNames()) list += name + "\n";

@@ -40,8 +40,8 @@ struct ReadOptions {
     /// NIfTI and .npy of more than three axes: which of their volumes, from 0 on; the fourth axis
     /// counts fastest (of a C-ordered .npy the one before the last three). Empty: there has to be
     /// one. TIFF that ImageJ or OME-XML describes: which of its channels and times, channels
-    /// counting fastest. Of a segmentation of 3D Slicer in layers: which layer; empty: all of them, a voxel
-    /// having the label that Slicer shows on top. Other formats pay no heed to it.
+    /// counting fastest. Of a segmentation of 3D Slicer in layers: which layer; empty: all of them,
+    /// a voxel having the label that Slicer shows on top. Other formats pay no heed to it.
     std::optional<std::int64_t> volume;
     /// DICOM: the UID of the series to read. Empty: there has to be one. Other formats pay no heed
     /// to it.

@@ -9,6 +9,7 @@
 
 #include "deltasplat/error.h"
 #include "ingest/files/file_name.h"
+#include "ingest/files/name_signs.h"
 #include "printable.h"
 
 namespace deltasplat {
@@ -74,15 +75,17 @@ namespace {
 // The number of a name such as slice.%04d.png: %d, or %01d to %09d; the last one counts.
 std::optional<StackPattern> percentPattern(const std::filesystem::path& folder,
                                            const std::string& name) {
-    std::size_t sign = name.rfind('%');
+    const std::string signs = maskedEscapes(name);
+    std::size_t sign = signs.rfind('%');
     for (; sign != std::string::npos;
-         sign = sign == 0 ? std::string::npos : name.rfind('%', sign - 1)) {
-        const bool padded = name.size() > sign + 3 && name[sign + 1] == '0' &&
-                            name[sign + 2] >= '1' && name[sign + 2] <= '9';
+         sign = sign == 0 ? std::string::npos : signs.rfind('%', sign - 1)) {
+        const bool padded = signs.size() > sign + 3 && signs[sign + 1] == '0' &&
+                            signs[sign + 2] >= '1' && signs[sign + 2] <= '9';
         const std::size_t end = sign + (padded ? 3 : 1);
-        if (end >= name.size() || name[end] != 'd') continue;
-        const std::size_t digits = padded ? std::size_t(name[sign + 2] - '0') : 0;
-        return StackPattern{folder, name.substr(0, sign), name.substr(end + 1), digits};
+        if (end >= signs.size() || signs[end] != 'd') continue;
+        const std::size_t digits = padded ? std::size_t(signs[sign + 2] - '0') : 0;
+        return StackPattern{folder, withoutEscapes(name.substr(0, sign)),
+                            withoutEscapes(name.substr(end + 1)), digits};
     }
     return std::nullopt;
 }
@@ -91,12 +94,13 @@ std::optional<StackPattern> percentPattern(const std::filesystem::path& folder,
 
 std::optional<StackPattern> stackPattern(const std::filesystem::path& input) {
     const std::string name = input.filename().string();
-    const std::size_t last = name.rfind('#');
+    const std::string signs = maskedEscapes(name);
+    const std::size_t last = signs.rfind('#');
     if (last != std::string::npos) {
-        const std::size_t before = name.find_last_not_of('#', last);
+        const std::size_t before = signs.find_last_not_of('#', last);
         const std::size_t first = before == std::string::npos ? 0 : before + 1;
-        return StackPattern{input.parent_path(), name.substr(0, first), name.substr(last + 1),
-                            last + 1 - first};
+        return StackPattern{input.parent_path(), withoutEscapes(name.substr(0, first)),
+                            withoutEscapes(name.substr(last + 1)), last + 1 - first};
     }
     return percentPattern(input.parent_path(), name);
 }

@@ -21,7 +21,8 @@ struct StackPattern {
     std::string nameOf(std::uint64_t number) const;
 };
 
-/// Returns the pattern in a file's name: the last run of `#`, or else `%d` or `%0Nd`.
+/// Returns the pattern in a file's name: the last run of `#`, or else `%d` or `%0Nd`. Behind a `\`
+/// a sign is no part of one.
 std::optional<StackPattern> stackPattern(const std::filesystem::path& input);
 
 /// Returns the files of a pattern in the order of their numbers.

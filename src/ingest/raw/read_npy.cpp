@@ -67,8 +67,8 @@ DenseSource openNpy(const std::filesystem::path& path, const ReadOptions& option
     file.volume =
         chooseVolume(path.string(), "shape " + header.shape, header.volumes, options.volume);
     DenseSource source = denseSourceOf(file);
-    source.worldFromIndex =
-        glm::scale(glm::translate(glm::dmat4(1), format.origin), format.spacing.value_or(glm::dvec3(1)));
+    source.worldFromIndex = glm::scale(glm::translate(glm::dmat4(1), format.origin),
+                                       format.spacing.value_or(glm::dvec3(1)));
     return header.half ? fromHalves(std::move(source)) : source;
 }
 

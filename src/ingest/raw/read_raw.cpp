@@ -17,8 +17,8 @@ DenseSource openRaw(const std::filesystem::path& path, const RawFormat& format) 
     if (named || std::filesystem::file_size(path) != plain) file.packing = packingOf(path);
     requireRawSize(file);
     DenseSource source = denseSourceOf(file);
-    source.worldFromIndex =
-        glm::scale(glm::translate(glm::dmat4(1), format.origin), format.spacing.value_or(glm::dvec3(1)));
+    source.worldFromIndex = glm::scale(glm::translate(glm::dmat4(1), format.origin),
+                                       format.spacing.value_or(glm::dvec3(1)));
     return source;
 }
 
