@@ -71,13 +71,13 @@ foreach(file ball.vdb cube_8x8x8_uint8.raw stack.1.pgm)
         string(REPLACE ";" " " name "${command}")
         string(MAKE_C_IDENTIFIER "${name}" name)
         deltasplat_cli_test(several.no_volumes.${name} EXIT 2 ARGS ${command} --volume 1
-            STDERR "deltasplat: --volume: got 1; expected it with a .nii, .nii.gz, .npy or .tif input")
+            STDERR "deltasplat: --volume: got 1; expected it with a .nii, .nrrd, .npy or .tif input")
         deltasplat_cli_test(several.no_series.${name} EXIT 2 ARGS ${command} --series 1.2
             STDERR "deltasplat: --series: got 1.2; expected it with a DICOM input")
     endforeach()
 endforeach()
 deltasplat_cli_test(several.no_volumes.diff EXIT 4 ARGS diff ball.vdb ball.vdb --volume 0
-    STDERR "deltasplat: --volume: got 0; expected it with a .nii, .nii.gz, .npy or .tif input")
+    STDERR "deltasplat: --volume: got 0; expected it with a .nii, .nrrd, .npy or .tif input")
 deltasplat_cli_test(several.series_of_nifti EXIT 2 ARGS info several.nii --series 1.2
     STDERR "deltasplat: --series: got 1.2; expected it with a DICOM input")
 foreach(text -1 1.5 all 99999999999999999999)

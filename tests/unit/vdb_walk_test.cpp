@@ -41,7 +41,7 @@ void expectWholeWalk(std::uint32_t compression, bool half) {
     const VdbGrid& listed = vdb.grids()[0];
     VdbValueFormat format;
     ASSERT_TRUE(format.setType(listed.type, listed.half));
-    VdbBytes bytes("a.vdb");
+    VdbBytes bytes(std::make_shared<const FileBytes>("a.vdb"));
     bytes.seek(listed.data);
     format.compression = bytes.u32();
     readMetadata(bytes);

@@ -154,7 +154,7 @@ void warnOfWholeNumbers(const Volume& volume, const DeltaFileEntry& entry,
 
 // Asked before hours of work, as far as it can be known.
 void requireScalars(const DeltaCommand& command, const std::filesystem::path& input) {
-    const bool mayHoldOthers = lowerExtension(input) == ".vdb" && command.read.gridName.empty();
+    const bool mayHoldOthers = isVdbName(input) && command.read.gridName.empty();
     if (command.scalarsAlone || !mayHoldOthers) return;
     const GridList grids = listGrids(input);
     if (!grids.scalar.empty() && !grids.others.empty())

@@ -40,10 +40,6 @@ struct GridPair {
     std::string b;
 };
 
-bool isVdb(const std::filesystem::path& file) {
-    return lowerExtension(file) == ".vdb";
-}
-
 bool contains(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -70,7 +66,7 @@ void requireNames(const std::filesystem::path& file, const std::vector<std::stri
 // Notes the scalar grids of a .vdb that stand beside the one compared.
 void noteOthers(const std::filesystem::path& file, std::vector<std::string>& onlyHere,
                 std::vector<std::string>& notCompared) {
-    if (!isVdb(file)) return;
+    if (!isVdbName(file)) return;
     const GridList grids = listGrids(file);
     notCompared.insert(notCompared.end(), grids.others.begin(), grids.others.end());
     if (!grids.preferred.empty()) onlyHere = without(grids.scalar, {grids.preferred});
@@ -80,7 +76,7 @@ void noteOthers(const std::filesystem::path& file, std::vector<std::string>& onl
 std::vector<GridPair> pairGrids(const DiffOptions& options, FileDiff& diff) {
     const std::string& asked = options.read.gridName;
     if (!asked.empty()) return {{asked, asked}};
-    if (!isVdb(options.a) || !isVdb(options.b)) {
+    if (!isVdbName(options.a) || !isVdbName(options.b)) {
         noteOthers(options.a, diff.onlyInA, diff.notCompared);
         noteOthers(options.b, diff.onlyInB, diff.notCompared);
         return {{"", ""}};
@@ -115,7 +111,7 @@ ReadOptions optionsFor(const std::filesystem::path& file, const std::filesystem:
 // @param packed  whether values may stay in the file
 Volume readOne(const std::filesystem::path& file, const std::string& grid, ReadOptions options,
                bool packed, const Listener& listener) {
-    options.gridName = isVdb(file) ? grid : "";
+    options.gridName = isVdbName(file) ? grid : "";
     options.keepSource = true;
     if (packed) {
         if (auto volume = readPackedVolume(file, options, listener)) return std::move(*volume);
@@ -297,7 +293,7 @@ Verdict runDiff(const CLI::App& app, DiffOptions options, const Session& session
     // Most grids of a .vdb need no library.
     std::vector<std::jthread> loading;
     for (const std::filesystem::path& file : {options.a, options.b})
-        if (!isVdb(file)) loading.push_back(loadEarly(file));
+        if (!isVdbName(file)) loading.push_back(loadEarly(file));
     for (std::filesystem::path* const file : {&options.a, &options.b})
         settleNames(app, options.frames, *file);
     if (options.frames.asked()) return compareFrames(app, options, session);

@@ -66,9 +66,10 @@ void addInputOptions(CLI::App& app, ReadOptions& options) {
 
     OptionGroup several(app, "Input, several volumes");
     several.addValue("--volume", "N", options.volume, wholeNumber(),
-                     "NIfTI and .npy of more than three axes, TIFF of several channels or\n"
-                     "times: which volume, from 0 on (without it they are an error; info\n"
-                     "tells how many there are)");
+                     "NIfTI, NRRD and .npy of more than three axes, TIFF of several channels\n"
+                     "or times: which volume, from 0 on (without it they are an error; info\n"
+                     "tells how many there are); .seg.nrrd: which layer (without it all as\n"
+                     "one, later segments on top)");
     several.addValue("--series", "UID", options.series, anyText(),
                      "DICOM folder of several series: which one (without it they are\n"
                      "an error; info lists them)");
@@ -128,8 +129,9 @@ void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesy
     const bool anyRaw = formats.contains(InputKind::Format::kRaw);
     const bool anyNpy = formats.contains(InputKind::Format::kNpy);
     const bool anyImages = formats.contains(InputKind::Format::kImages);
-    requireChoice(app, "--volume", anyNpy || anyTiff || formats.contains(InputKind::Format::kNifti),
-                  "a .nii, .nii.gz, .npy or .tif");
+    const bool mayBeSeveral = anyNpy || anyTiff || formats.contains(InputKind::Format::kNifti) ||
+                              formats.contains(InputKind::Format::kNrrd);
+    requireChoice(app, "--volume", mayBeSeveral, "a .nii, .nrrd, .npy or .tif");
     requireChoice(app, "--series", formats.contains(InputKind::Format::kDicom), "a DICOM");
     const auto warnOf = [&](const std::vector<std::string>& options, const std::string& input) {
         const std::string remark = ": has no effect without " + input;

@@ -41,7 +41,7 @@ class Batch {
         for (const fs::path& file : filesOf(found.file))
             if (const auto place = placeOf(file)) inputs_.insert(*place);
         const InputParts parts = partsOfInput(found.file, found.folder);
-        const bool hasGrids = lowerExtension(found.file) == ".vdb";
+        const bool hasGrids = isVdbName(found.file);
         if (!output_ || !output_->hasGrid() || !hasGrids) return add(found, parts, "");
         std::vector<std::string> grids;
         try {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "deltasplat/error.h"
+#include "ingest/files/byte_source.h"
 #include "ingest/files/file_name.h"
 #include "ingest/files/unpacker.h"
 #include "memory.h"
@@ -51,6 +52,11 @@ std::shared_ptr<const FileBytes> FileBytes::unpacked(const std::filesystem::path
     bytes->size_ = all.size();
     bytes->held_ = std::move(all);
     return bytes;
+}
+
+std::shared_ptr<const FileBytes> FileBytes::plain(const std::filesystem::path& file) {
+    if (packingOf(file) == Packing::kNone) return std::make_shared<const FileBytes>(file);
+    return unpacked(file);
 }
 
 FileBytes::~FileBytes() {

@@ -19,6 +19,8 @@ class FileBytes {
     /// Returns the bytes that a file holds under gzip, in memory.
     /// @throw Error(kInput) if it is no sound gzip; Error(kFailed) if they do not fit into memory
     static std::shared_ptr<const FileBytes> unpacked(const std::filesystem::path& file);
+    /// Returns the bytes of a file, or if it begins as gzip does those that it holds.
+    static std::shared_ptr<const FileBytes> plain(const std::filesystem::path& file);
     ~FileBytes();
     FileBytes(const FileBytes&) = delete;
     FileBytes& operator=(const FileBytes&) = delete;

@@ -14,6 +14,11 @@ std::string lowerExtension(const std::filesystem::path& file) {
     return lowerCase(file.stem().extension().string()) + last;
 }
 
+bool isVdbName(const std::filesystem::path& file) {
+    const std::string extension = lowerExtension(file);
+    return extension == ".vdb" || extension == ".vdb.gz";
+}
+
 std::string nameWithoutExtensions(const std::filesystem::path& file) {
     const std::string name = file.filename().string();
     return name.substr(0, name.size() - lowerExtension(file).size());

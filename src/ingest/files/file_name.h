@@ -9,6 +9,9 @@ namespace deltasplat {
 /// Returns the file's extension in lower case, a ".gz" before it kept: ".raw", ".raw.gz", ".vdb".
 std::string lowerExtension(const std::filesystem::path& file);
 
+/// Whether a file is named as .vdb files are, under gzip or not.
+bool isVdbName(const std::filesystem::path& file);
+
 /// Returns the file's name without folder and without the extension that lowerExtension gives.
 std::string nameWithoutExtensions(const std::filesystem::path& file);
 

@@ -135,8 +135,7 @@ InputKind findInFolder(const std::filesystem::path& folder, const Listener& list
     }
     const Files images = filesThat(all, isImageName);
     if (images.empty()) {
-        const Files grids =
-            filesThat(all, [](const auto& file) { return lowerExtension(file) == ".vdb"; });
+        const Files grids = filesThat(all, [](const auto& file) { return isVdbName(file); });
         const Files others =
             filesThat(all, [](const auto& file) { return formatOf(file).has_value(); });
         std::string such;

@@ -8,15 +8,9 @@
 #include "deltasplat/error.h"
 
 namespace deltasplat {
-VdbBytes::VdbBytes(const std::filesystem::path& file)
-    : name_(file.string()), file_(file, std::ios::in | std::ios::binary) {
-    if (!file_) {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(name_, "a file that cannot be opened", "a readable file"));
-    }
-    file_.seekg(0, std::ios::end);
-    size_ = std::uint64_t(file_.tellg());
-}
+
+VdbBytes::VdbBytes(std::shared_ptr<const FileBytes> file)
+    : file_(std::move(file)), name_(file_->path().string()), size_(file_->size()) {}
 
 void VdbBytes::failCorrupt(const std::string& got, const std::string& expected) const {
     throw Error(ErrorCode::kInput, gotExpected(name_, got, expected));
@@ -66,9 +60,7 @@ void VdbBytes::read(void* to, std::uint64_t count) {
 void VdbBytes::fill(std::uint64_t begin, std::uint64_t count) {
     bufferBegin_ = begin;
     buffer_.resize(std::size_t(count));
-    file_.seekg(std::streamoff(begin));
-    file_.read(buffer_.data(), std::streamsize(count));
-    if (!file_) failCorrupt("a read error", "a readable file");
+    if (file_->read(begin, buffer_.data(), std::size_t(count)) != count) file_->throwChanged();
     constexpr std::uint64_t kStepBytes = std::uint64_t{4} << 20;
     untold_ += count;
     if (!step_ || untold_ < kStepBytes) return;

@@ -2,20 +2,20 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "ingest/files/file_bytes.h"
 
 namespace deltasplat {
 
 /// Reads the small fields of a .vdb file (little endian), each checked against the file's size.
 class VdbBytes {
   public:
-    /// @throw Error(kInput) if the file cannot be opened
-    explicit VdbBytes(const std::filesystem::path& file);
+    explicit VdbBytes(std::shared_ptr<const FileBytes> file);
 
     std::uint64_t size() const { return size_; }
     std::uint64_t position() const { return position_; }
@@ -41,8 +41,8 @@ class VdbBytes {
     template <typename T>
     T number();
 
+    std::shared_ptr<const FileBytes> file_;
     std::string name_;
-    std::ifstream file_;
     std::uint64_t size_ = 0;
     std::uint64_t position_ = 0;
     std::vector<char> buffer_;                          // what the file holds from bufferBegin_ on

@@ -193,12 +193,13 @@ std::string VdbGrid::valueType() const {
     return half && (type == "float" || type == "double") ? "half" : type;
 }
 
-VdbFile::VdbFile(std::filesystem::path file) : file_(std::move(file)) {
+VdbFile::VdbFile(std::filesystem::path file)
+    : file_(std::move(file)), bytes_(FileBytes::plain(file_)) {
     readDirectory();
 }
 
 void VdbFile::readDirectory() {
-    VdbBytes bytes(file_);
+    VdbBytes bytes(bytes_);
     if (bytes.size() < 8 || bytes.i64() != openvdb::OPENVDB_MAGIC) {
         bytes.failCorrupt("no OpenVDB data", "a .vdb file");
     }
@@ -227,7 +228,7 @@ void VdbFile::readDirectory() {
 }
 
 VdbMetadata VdbFile::metadata(const VdbGrid& grid) const {
-    VdbBytes bytes(file_);
+    VdbBytes bytes(bytes_);
     return readHead(bytes, grid, file_).metadata;
 }
 
@@ -285,7 +286,7 @@ std::optional<VdbFile::Found> VdbFile::find(const VdbGrid& grid, Find how,
                                             const Listener& listener) const {
     const std::string where = whereOf(file_, grid);
     const VdbGrid& owner = ownerOf(grid);
-    VdbBytes bytes(file_);
+    VdbBytes bytes(bytes_);
     const GridHead head = readHeads(bytes, grid, owner, file_);
     const std::uint64_t begin = bytes.position();
     bytes.onProgress([&](std::uint64_t position) {
@@ -305,7 +306,7 @@ std::optional<VdbFile::Found> VdbFile::find(const VdbGrid& grid, Find how,
     std::vector<char> background(head.format.bytes);
     bytes.seek(places.background);
     bytes.read(background.data(), background.size());
-    auto file = std::make_shared<const FileBytes>(file_);
+    std::shared_ptr<const FileBytes> file = bytes_;
     VdbLeaves leaves(file, std::move(places.leaves), head.format, head.transform);
     return Found{where,
                  head,

@@ -105,6 +105,7 @@ class VdbFile {
     const VdbGrid& ownerOf(const VdbGrid& grid) const;
 
     std::filesystem::path file_;
+    std::shared_ptr<const FileBytes> bytes_;  // unpacked, if it lies under gzip
     VdbMetadata metadata_;
     std::vector<VdbGrid> grids_;
 };
