@@ -157,7 +157,8 @@ std::optional<FarGroups> FarGroups::find(const Volume& volume, const BlockSet* m
     impl->listPieces(more);
     if (impl->pieces.empty()) return {};
     impl->splitAll();
-    if (kWorth * impl->joinWhereCheaper() > cost || impl->nodes.front().axis < 0) return {};
+    // It may be a single one: cuts leave voxels in a box that was for others.
+    if (kWorth * impl->joinWhereCheaper() > cost) return {};
     impl->numberGroups();
     return FarGroups(std::move(impl));
 }
