@@ -60,7 +60,7 @@ std::vector<VolumeEntry> listVdb(const std::filesystem::path& path) {
 
 void describe(const DenseSource& source, VolumeEntry& entry) {
     entry.name = source.name;
-    entry.type = rawTypeName(source.type);
+    entry.type = rawTypeName(source.valueType());
     entry.box = IndexBox{glm::ivec3(0), glm::ivec3(source.dims) - 1};
     entry.volumes = source.volumes;
 }

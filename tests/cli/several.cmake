@@ -98,12 +98,12 @@ deltasplat_bad_input(volumes_endless
 if(NOT DELTASPLAT_ITK)
     return()
 endif()
-set(all "1.2.1: 4 files, 1.2.2: 4 files, 1.2.3: 1 file")
+set(all "1.2.1 (CT, Thorax 1.5 mm, 3x2x4), 1.2.2 (CT, Scout, 5x2x4), 1.2.3 (SR, Dose report, 1 file)")
 foreach(command "render;series;-o;out.exr" "convert;series;out.vdb" "delta;series;out.vdb"
         "bench;series;--size;8x8;--repeats;1")
     list(GET command 0 word)
     deltasplat_cli_test(several.asks.${word}.series EXIT 3 ARGS ${command}
-        STDERR "deltasplat: series: got 3 DICOM series (${all}); expected one, chosen by --series UID")
+        STDERR "deltasplat: series: got 3 DICOM series: ${all}; expected one, chosen by --series UID")
     deltasplat_cli_test(several.beyond.${word}.series EXIT 3 ARGS ${command} --series 1.2
         STDERR "deltasplat: series: got no DICOM series 1.2; expected --series of ${all}")
     output_of(${word} creates)

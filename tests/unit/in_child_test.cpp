@@ -7,7 +7,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
 
 #include "process/interrupt.h"
 #include "support/error_of.h"
@@ -37,6 +41,24 @@ TEST(InChild, OutlivesWorkThatEndsTheProcess) {
         1, [](std::byte*) -> bool { ::_exit(0); }, &byte));
     EXPECT_FALSE(inChild(
         1, [](std::byte*) -> bool { throw 1; }, &byte));
+}
+
+// A decoder that believes a size in its bytes takes no more than a child is given.
+TEST(InChild, TakesNoMemoryWithoutEnd) {
+    std::byte byte{};
+    const auto takes = [&](std::size_t bytes) {
+        return inChild(
+            1,
+            [bytes](std::byte*) {
+                const std::unique_ptr<char, decltype(&std::free)> taken(
+                    static_cast<char*>(std::malloc(bytes)), &std::free);
+                if (taken) std::memset(taken.get(), 1, std::min<std::size_t>(bytes, 4096));
+                return taken != nullptr;
+            },
+            &byte);
+    };
+    EXPECT_TRUE(takes(std::size_t{16} << 20));
+    EXPECT_FALSE(takes(std::size_t{2} << 30));
 }
 
 // As the system does when memory runs out: the bytes are not to blame.

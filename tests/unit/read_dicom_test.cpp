@@ -208,7 +208,7 @@ TEST(ReadDicomError, SlicesThatDiffer) {
         "a.dcm",
         [](auto& files) { files[3].orientation = "0\\1\\0\\1\\0\\0"; });
     expectRefusedWith(
-        "scan: got 2 DICOM series (1.2.3: 3 files, 1.2.4: 2 files); expected one, chosen by "
+        "scan: got 2 DICOM series: 1.2.3 (CT, 3x2x3), 1.2.4 (CT, 3x2x2); expected one, chosen by "
         "`series` UID",
         [](auto& files) { files[3].series = files[1].series = "1.2.4"; });
 }
@@ -232,8 +232,10 @@ TEST(ReadDicomError, Headers) {
         "scan/o.dcm: got directions or spacing that are impossible; expected unit "
         "vectors at a right angle and spacing above 0",
         [](auto& files) { files[2].pixelSpacing = "0\\1"; });
-    expectRefusedWith("scan/o.dcm: got 7 frames in one file; expected one slice in each file",
-                      [](auto& files) { files[2].frames = "7"; });
+    expectRefusedWith(
+        "scan/o.dcm: got 7 frames in one file; expected one slice in each file, or frames that say "
+        "where each lies",
+        [](auto& files) { files[2].frames = "7"; });
     expectRefusedWith("scan/o.dcm: got no image; expected a DICOM slice with rows and columns",
                       [](auto& files) { files[2].rows = 0; });
     expectRefusedWith("scan/o.dcm: got pixels of kind RGB; expected one grey value a pixel",
@@ -300,7 +302,8 @@ TEST(ReadDicom, SeriesAreChosen) {
     const Volume second = readVolume("scan", options);
     EXPECT_EQ(second.box.dims(), glm::ivec3(6, 1, 3));
     EXPECT_EQ(valuesOf(second), expected(3));
-    const std::string all = "1.2.100: 1 file, 1.2.3: 5 files, 1.2.99: 3 files";
+    const std::string all =
+        "1.2.100 (CT, Dose report, 1 file), 1.2.3 (CT, 3x2x5), 1.2.99 (CT, Scout, 6x1x3)";
     options.series = "1.2.9";
     expectRefused("scan: got no DICOM series 1.2.9; expected `series` of " + all, "scan", options);
     options.series = "";
@@ -308,7 +311,7 @@ TEST(ReadDicom, SeriesAreChosen) {
     options.series = "1.2.100";
     expectRefused("scan/report.dcm: got no image; expected a DICOM slice with rows and columns",
                   "scan", options);
-    expectRefused("scan: got 3 DICOM series (" + all + "); expected one, chosen by `series` UID",
+    expectRefused("scan: got 3 DICOM series: " + all + "; expected one, chosen by `series` UID",
                   "scan");
 }
 
@@ -319,10 +322,10 @@ TEST(ReadDicomError, EverySeriesIsNamed) {
     for (int i = 0; i < 24; ++i) {
         files[std::size_t(i)].series =
             "1.2.840.113704.1.111.5104.1396.20261121100000." + std::to_string(1000 + i);
-        all += (i == 0 ? "" : ", ") + files[std::size_t(i)].series + ": 1 file";
+        all += (i == 0 ? "" : ", ") + files[std::size_t(i)].series + " (CT, 3x2x1)";
     }
     write(files);
-    expectRefused("scan: got 24 DICOM series (" + all + "); expected one, chosen by `series` UID",
+    expectRefused("scan: got 24 DICOM series: " + all + "; expected one, chosen by `series` UID",
                   "scan");
 }
 
@@ -543,8 +546,6 @@ TEST(ReadDicomError, Structure) {
         }
     };
     refusedWith("element has the unknown type \"X?\"", "OW", "X\n");
-    refusedWith("elements are in no order", std::string("\x28\0\x02\0", 4),
-                std::string("\x08\0\x02\0", 4));
     refusedWith("DICOM with the transfer syntax \"1.2.840.90008.1.2.1\"", "1.2.840.10008.1.2.1",
                 "1.2.840.90008.1.2.1");
     refusedWith("DICOM with the transfer syntax \"1.2.840.10008.1.2.1.99\"",

@@ -7,7 +7,9 @@
 #include <functional>
 #include <glm/mat4x4.hpp>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/memory_limit.h"
@@ -30,7 +32,15 @@ struct DenseSource {
     std::string space;                        ///< as Volume::space
     std::string lengthUnit;                   ///< as Volume::lengthUnit
     std::shared_ptr<const LabelList> labels;  ///< as Volume::labels
-    std::int64_t volumes = 1;                 ///< how many volumes its file has, one of which it is
+    /// Voxels of which the file says that nothing is there.
+    struct Nothing {
+        double value = 0;                     ///< what they have, and no other voxel; may be NaN
+        RawType valueType = RawType::kUint8;  ///< that of the other voxels' values
+    };
+    std::optional<Nothing> nothing;
+    RawType valueType() const { return nothing ? nothing->valueType : type; }
+    std::vector<std::string> notes;  ///< what users may not expect of the values: warnings
+    std::int64_t volumes = 1;        ///< how many volumes its file has, one of which it is
 
     /// Receives `slices` slices from number `first` on, x fastest, without gaps.
     using LayerUse = std::function<void(int first, int slices, const std::byte* bytes)>;

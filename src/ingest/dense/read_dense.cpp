@@ -139,6 +139,7 @@ Survey chooseBook(const DenseSource& source, const ReadOptions& options, const L
 
 void warnOfChanges(const DenseSource& source, const ReadOptions& options, const Volume& volume,
                    const Listener& listener) {
+    for (const std::string& note : source.notes) listener.warn(source.where + ": " + note);
     if (volume.replaced > 0) {
         listener.warn(source.where + ": " + std::to_string(volume.replaced) +
                       " NaN or infinite values replaced by " + numberText(*options.nanValue));
@@ -324,15 +325,40 @@ void settleBackground(Tree& tree, const typename Tree::ValueType& background) {
     inner.foreachBottomUp(openvdb::tools::InactivePruneOp<Tree>(tree));
 }
 
-// Makes inactive what has a value, as the grid's type has it, and that value the background; NaN
-// stands for itself, and makes the background 0.
-template <typename Tree>
-void dropValue(Tree& tree, double dropped) {
-    using Value = typename Tree::ValueType;
-    const Value background = std::isnan(dropped) ? Value{} : valueAs<Value>(dropped);
-    const auto isDropped = [&](Value value) {
-        return std::isnan(dropped) ? double(value) != double(value) : value == background;
+// Whether a value, as the grid's type has it, is to be dropped; NaN stands for itself.
+template <typename Value>
+auto dropTest(double dropped) {
+    return [dropped, same = valueAs<Value>(dropped)](Value value) {
+        return std::isnan(dropped) ? double(value) != double(value) : value == same;
     };
+}
+
+// Returns the least value that stays, 0 if none does.
+template <typename Tree>
+double leastOther(const Tree& tree, double dropped) {
+    const auto isDropped = dropTest<typename Tree::ValueType>(dropped);
+    std::vector<const typename Tree::LeafNodeType*> leaves;
+    tree.getNodes(leaves);
+    std::vector<double> least(leaves.size(), std::numeric_limits<double>::infinity());
+    forLeafRuns(leaves.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            for (auto voxel = leaves[i]->cbeginValueOn(); voxel; ++voxel)
+                if (!isDropped(*voxel)) least[i] = std::min(least[i], double(*voxel));
+        }
+    });
+    forActiveTiles(tree, [&](const auto& tile) {
+        if (!isDropped(*tile)) least.push_back(double(*tile));
+    });
+    const auto found = std::min_element(least.begin(), least.end());
+    return found == least.end() || std::isinf(*found) ? 0 : *found;
+}
+
+// Makes inactive what has a value, and what is inactive have another.
+template <typename Tree>
+void dropValue(Tree& tree, double dropped, double newBackground) {
+    using Value = typename Tree::ValueType;
+    const auto background = valueAs<Value>(newBackground);
+    const auto isDropped = dropTest<Value>(dropped);
     std::vector<typename Tree::LeafNodeType*> leaves;
     tree.getNodes(leaves);
     forLeafRuns(leaves.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -370,9 +396,45 @@ void requireLimit(const DenseSource& source, const ReadOptions& options, bool ke
     requireMemory(source.where, double(countMixedBlocks(source, stopping)) * bytesPerBlock);
 }
 
+// Says how many voxels are nothing, where any is.
+void warnOfNothing(const DenseSource& source, const Volume& volume, const Listener& listener) {
+    const std::uint64_t count = std::uint64_t(volume.box.voxels()) - volume.activeCount;
+    if (count == 0) return;
+    listener.warn(source.where + ": " + std::to_string(count) +
+                  " voxels hold what fills pictures up and count as nothing");
+}
+
+// Reads a volume of which some voxels are nothing: inactive, with the least of the others' values
+// as background, which the clear end of ramps is and what dense formats hold there.
+Volume readWithNothing(const DenseSource& source, const ReadOptions& options,
+                       const Listener& listener) {
+    constexpr double kReadShare = 0.5;
+    const double nothing = source.nothing->value;
+    requireLimit(source, options, true, listener);
+    TreeGrid grid = readSourceGrid(source, {}, false, partOf(listener, 0, kReadShare));
+    grid.metadata.insert(kSpaceKey, source.space);
+    if (!source.lengthUnit.empty()) grid.metadata.insert(kLengthUnitKey, source.lengthUnit);
+    grid.metadata.insert(kSourceTypeKey, std::string(rawTypeName(source.valueType())));
+    const IndexBox box{glm::ivec3(0), glm::ivec3(source.dims) - 1};
+    grid.metadata.insert(kBoxMinKey, box.min);
+    grid.metadata.insert(kBoxMaxKey, box.max);
+    grid.apply<ScalarTrees>(
+        [&](auto& tree) { dropValue(tree, nothing, leastOther(tree, nothing)); });
+    const Listener coding = partOf(listener, kReadShare, 1);
+    Volume volume = volumeOfGrid(std::move(grid),
+                                 {coding, source.where, rawTypeName(source.valueType()), options});
+    volume.name = source.name;
+    volume.worldFromIndex = source.worldFromIndex;
+    volume.box = box;
+    warnOfChanges(source, options, volume, listener);
+    warnOfNothing(source, volume, listener);
+    return volume;
+}
+
 // @param mayKeepUnsigned  as readDenseUnsigned
 Volume read(const DenseSource& source, const ReadOptions& options, bool mayKeepUnsigned,
             const Listener& listener) {
+    if (source.nothing) return readWithNothing(source, options, listener);
     const double scanned = needsScan(source.type) ? 0.5 : 0.0;
     Volume volume;
     volume.codeBook = fixedBook(source.type);
@@ -437,7 +499,8 @@ Volume readSparse(const DenseSource& source, double background, const ReadOption
     if (!source.space.empty()) grid.metadata.insert(kSpaceKey, source.space);
     if (!source.lengthUnit.empty()) grid.metadata.insert(kLengthUnitKey, source.lengthUnit);
     if (source.labels) grid.metadata.insert(kLabelsKey, labelText(*source.labels));
-    grid.apply<ScalarTrees>([&](auto& tree) { dropValue(tree, background); });
+    grid.apply<ScalarTrees>(
+        [&](auto& tree) { dropValue(tree, background, std::isnan(background) ? 0 : background); });
     const Listener coding = partOf(listener, kReadShare, 1);
     Volume volume =
         volumeOfGrid(std::move(grid), {coding, source.where, rawTypeName(source.type), options});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "deltasplat/error.h"
 #include "number_text.h"
@@ -83,7 +84,8 @@ DicomVolume arrangeSlices(const std::string& folder, std::vector<DicomSlice> sli
     std::sort(slices.begin(), slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {
         const double placeA = glm::dot(a.position, normal);
         const double placeB = glm::dot(b.position, normal);
-        return placeA != placeB ? placeA < placeB : a.file < b.file;
+        if (placeA != placeB) return placeA < placeB;
+        return std::tie(a.file, a.frame) < std::tie(b.file, b.frame);
     });
     for (const DicomSlice& slice : slices) requireAlike(slices.front(), slice);
 

@@ -7,39 +7,44 @@
 #include <string>
 #include <vector>
 
-#include "ingest/dense/rescale.h"
+#include "ingest/dicom/dicom_meaning.h"
 #include "ingest/dicom/dicom_walk.h"
 
 namespace deltasplat {
 
-/// How the pixels of a slice are stored.
+/// How the picture is stored that a slice is, or is a part of.
 struct DicomPixels {
     std::string syntax;  ///< DICOM's name for how the file is written
     bool bigEndian = false;
     bool packed = false;
     bool words = true;
     using Piece = DicomElements::Piece;
-    std::vector<Piece> pieces;
-    int bitsAllocated = 16;  ///< 8, 16 or 32
-    int bitsStored = 16;     ///< the lowest of them
-    bool isSigned = false;
-    Rescale rescale;
+    std::vector<Piece> pieces;  ///< without a table of offsets
+    int columns = 0;
+    int rows = 0;
+    DicomBits bits;
 };
 
 /// What the header of one DICOM slice says, checked.
 struct DicomSlice {
     std::filesystem::path file;
+    int frame = 0;  ///< of several in the file, from 1 on; 0 if it is the only one
     int columns = 0;
     int rows = 0;
+    int left = 0;  ///< of its first voxel in the picture
+    int top = 0;
     DicomPixels pixels;
-    RawType type = RawType::kUint8;  ///< of the values, rescale slope and intercept applied
-    glm::dvec3 position{0.0};        ///< of the centre of the first voxel; millimetres, LPS
-    glm::dvec3 alongRow{0.0};        ///< from one column to the next
-    glm::dvec3 alongColumn{0.0};     ///< from one row to the next
-    double thickness = 1;            ///< along the normal; what a single slice goes by
+    DicomMeaning meaning;
+    glm::dvec3 position{0.0};     ///< of the centre of the first voxel; millimetres, LPS
+    glm::dvec3 alongRow{0.0};     ///< from one column to the next
+    glm::dvec3 alongColumn{0.0};  ///< from one row to the next
+    double thickness = 1;         ///< along the normal; what a single slice goes by
 
     glm::dvec3 normal() const;
-    std::string name() const { return file.filename().string(); }
+    std::string name() const {
+        const std::string number = frame > 0 ? " frame " + std::to_string(frame) : "";
+        return file.filename().string() + number;
+    }
 };
 
 /// The slices of one volume, in order, and where they lie.

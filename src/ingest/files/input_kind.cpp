@@ -2,18 +2,17 @@
 #include "ingest/files/input_kind.h"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
 #include <system_error>
 
 #include "deltasplat/error.h"
+#include "ingest/dicom/dicom_sniff.h"
 #include "ingest/files/file_name.h"
 #include "ingest/files/refuse_file.h"
 #include "ingest/images/image_stack.h"
+#include "lower_case.h"
 #include "printable.h"
 
 namespace deltasplat {
@@ -48,14 +47,6 @@ std::optional<Format> formatOf(const std::filesystem::path& file) {
 constexpr const char* kReadable =
     ".vdb, .raw, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .hdr, .img (all of these also with .gz), "
     ".dcm, .tif, .png, .jpg, .bmp, .pgm or .exr";
-
-// DICOM files have names of all kinds, but four letters behind 128 bytes that mean nothing.
-bool isDicom(const std::filesystem::path& file) {
-    std::array<char, 132> bytes{};
-    std::ifstream in(file, std::ios::binary);
-    if (!in) refuseFile(file, "a file that cannot be opened", "a readable file");
-    return in.read(bytes.data(), bytes.size()) && std::memcmp(&bytes[128], "DICM", 4) == 0;
-}
 
 // Regular files that are not hidden, in the order of their names. What is neither that nor a folder
 // may be a slice that is not there: nobody knows.
@@ -99,6 +90,22 @@ std::string kindExtension(const std::filesystem::path& file) {
     return word ? extension : "";
 }
 
+// Names of slices may be numbers with dots.
+std::string nameOfSlice(const std::filesystem::path& file) {
+    return kindExtension(file).empty() ? file.filename().string() : nameWithoutExtensions(file);
+}
+
+bool isNamedAsContents(const std::filesystem::path& file) {
+    return lowerCase(file.filename().string()) == "dicomdir";
+}
+
+// Tables of contents are in the same format.
+bool isContents(const std::filesystem::path& file) {
+    if (isNamedAsContents(file)) return true;
+    const std::optional<DicomStart> start = dicomStart(file);
+    return start && start->isContents;
+}
+
 // What is named as slices are but has no DICOM header has lost it: a volume without it would look
 // right and be wrong.
 void requireNoCutSlice(const std::filesystem::path& folder, const Files& all, const Files& dicom) {
@@ -115,7 +122,7 @@ void requireNoCutSlice(const std::filesystem::path& folder, const Files& all, co
     for (const std::filesystem::path& file : others) {
         const bool alike = names.contains(withoutNumbers(file.filename().string())) ||
                            extensions.contains(kindExtension(file));
-        if (!alike || file.filename() == "DICOMDIR") continue;
+        if (!alike || isContents(file)) continue;
         refuseFile(folder,
                    printable(file.filename().string()) +
                        ", which is named as its slices are but is no DICOM",
@@ -123,16 +130,95 @@ void requireNoCutSlice(const std::filesystem::path& folder, const Files& all, co
     }
 }
 
+// Slices are in files of any name.
+bool isSlice(const std::filesystem::path& file) {
+    return !isNamedAsContents(file) && isDicom(file);
+}
+
+// Whether a folder holds slices, whatever else it holds.
+bool holdsSlices(const std::filesystem::path& folder) {
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        std::error_code ignored;
+        const bool isHidden = entry.path().filename().string()[0] == '.';
+        if (isHidden || !entry.is_regular_file(ignored)) continue;
+        try {
+            if (isSlice(entry.path())) return true;
+        } catch (const Error&) {
+            // It may be anybody's.
+        }
+    }
+    return false;
+}
+
+// Returns the folders in one, in the order of their names. Those that links lead to are elsewhere.
+Files foldersIn(const std::filesystem::path& folder) {
+    Files folders;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        std::error_code ignored;
+        const bool isHidden = entry.path().filename().string()[0] == '.';
+        if (!isHidden && entry.is_directory(ignored) && !entry.is_symlink(ignored))
+            folders.push_back(entry.path());
+    }
+    sortByNumbers(folders);
+    return folders;
+}
+
+// Files in folders that hold slices.
+struct Study {
+    Files all;
+    Files dicom;
+};
+
+// Adds the slices below a folder, as studies and discs have them.
+void addSlicesBelow(const std::filesystem::path& folder, int depth, Study& study) {
+    constexpr int kMostDepth = 8;
+    if (depth == kMostDepth) return;
+    for (const std::filesystem::path& below : foldersIn(folder)) {
+        if (holdsSlices(below)) {
+            const Files all = filesIn(below);
+            const Files dicom = filesThat(all, isSlice);
+            requireNoCutSlice(below, all, dicom);
+            study.all.insert(study.all.end(), all.begin(), all.end());
+            study.dicom.insert(study.dicom.end(), dicom.begin(), dicom.end());
+        }
+        addSlicesBelow(below, depth + 1, study);
+    }
+}
+
+// Several images whose names differ in a number alone, as slices are named.
+bool areNamedAsStack(const Files& images) {
+    return images.size() > 1 &&
+           std::all_of(images.begin(), images.end(), [&](const std::filesystem::path& image) {
+               return withoutNumbers(image.filename().string()) ==
+                      withoutNumbers(images.front().filename().string());
+           });
+}
+
+// Returns the slices that lie below a folder without any. Pictures beside them are passed over,
+// unless they are named as a stack and more than the slices.
+std::optional<InputKind> findStudy(const std::filesystem::path& folder, const Files& all,
+                                   const Listener& listener) {
+    Study study{all, {}};
+    addSlicesBelow(folder, 0, study);
+    if (study.dicom.empty()) return {};
+    const bool isDisc = std::any_of(all.begin(), all.end(), isContents);
+    const Files images = filesThat(all, isImageName);
+    if (!isDisc && areNamedAsStack(images) && images.size() > study.dicom.size()) return {};
+    warnOfOthers(folder, study.all, study.dicom, "DICOM", listener);
+    return InputKind{Format::kDicom, folderName(folder), study.dicom};
+}
+
 InputKind findInFolder(const std::filesystem::path& folder, const Listener& listener) {
     const Files all = filesIn(folder);
-    // A DICOMDIR is a table of contents in the same format.
-    const Files dicom = filesThat(
-        all, [](const auto& file) { return file.filename() != "DICOMDIR" && isDicom(file); });
+    const Files dicom = filesThat(all, isSlice);
     if (!dicom.empty()) {
         requireNoCutSlice(folder, all, dicom);
         warnOfOthers(folder, all, dicom, "DICOM", listener);
         return {Format::kDicom, folderName(folder), dicom};
     }
+    if (std::optional<InputKind> study = findStudy(folder, all, listener)) return *study;
     const Files images = filesThat(all, isImageName);
     if (images.empty()) {
         const Files grids = filesThat(all, [](const auto& file) { return isVdbName(file); });
@@ -184,8 +270,13 @@ InputKind findInput(const std::filesystem::path& input, const Listener& listener
         return {Format::kImages, nameOfPattern(*pattern), stackFiles(input, *pattern)};
     }
     requireRegularFile(input);
+    // A disc's table of contents stands for the disc.
+    if (isNamedAsContents(input) && dicomStart(input))
+        return findInFolder(input.has_parent_path() ? input.parent_path() : ".", listener);
     const std::string extension = lowerExtension(input);
     const std::optional<Format> format = formatOf(input);
+    if ((!format || extension == ".img") && dicomStart(input))
+        return {Format::kDicom, nameOfSlice(input), {input}};
     if (!format) {
         refuseFile(input, "extension \"" + extension + "\"",
                    kReadable + std::string(extension == ".usda"    ? " (render reads .usda)"

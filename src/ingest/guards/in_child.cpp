@@ -9,13 +9,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <new>
 #include <string>
 #include <system_error>
 
 #include "deltasplat/error.h"
+#include "memory.h"
 
 namespace deltasplat {
 namespace {
@@ -44,6 +47,17 @@ void limit(int what, rlim_t most, rlim_t atLast) {
     ::setrlimit(what, &limits);
 }
 
+// Lets this process take so many bytes of addresses besides those that it has.
+void limitMemory(std::uint64_t most) {
+    std::ifstream in("/proc/self/statm");
+    std::uint64_t pages = 0;
+    if (!(in >> pages)) return;
+    const rlim_t limits = pages * std::uint64_t(::sysconf(_SC_PAGESIZE)) + most;
+    rlimit before{};
+    if (::getrlimit(RLIMIT_AS, &before) != 0 || before.rlim_cur <= limits) return;
+    limit(RLIMIT_AS, limits, limits);
+}
+
 // A signal for the parent is to end the child, not to be remembered by it.
 void forgetSignalHandlers() {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGALRM}) ::signal(signal, SIG_DFL);
@@ -55,14 +69,15 @@ void endWithParent(pid_t parent) {
     if (::getppid() != parent) ::_exit(0);
 }
 
-[[noreturn]] void runChild(pid_t parent, const std::function<bool(std::byte*)>& work,
-                           std::byte* shared) {
+[[noreturn]] void runChild(pid_t parent, std::uint64_t mostMemory,
+                           const std::function<bool(std::byte*)>& work, std::byte* shared) {
     endWithParent(parent);
     forgetSignalHandlers();
     constexpr rlim_t kSeconds = 60;
     limit(RLIMIT_CORE, 0, 0);
     // One more, so that it is SIGXCPU that ends the child.
     limit(RLIMIT_CPU, kSeconds, kSeconds + 1);
+    limitMemory(mostMemory);
     const int nowhere = ::open("/dev/null", O_WRONLY);
     ::dup2(nowhere, STDOUT_FILENO);
     ::dup2(nowhere, STDERR_FILENO);
@@ -74,6 +89,15 @@ void endWithParent(pid_t parent) {
     ::_exit(0);
 }
 
+// Returns what a child may take: enough for any codec, and no more than there is, but for what a
+// process needs to run at all.
+std::uint64_t memoryFor(std::size_t bytes) {
+    constexpr std::uint64_t kLeast = 64 << 20;
+    constexpr std::uint64_t kMost = 1 << 30;
+    constexpr std::uint64_t kTimes = 64;
+    return std::min(std::max(kLeast, availableMemory()), kMost + kTimes * bytes);
+}
+
 [[noreturn]] void fail(const std::string& why) {
     throw Error(ErrorCode::kFailed, "unpacking in a process of its own failed: " + why);
 }
@@ -83,10 +107,11 @@ void endWithParent(pid_t parent) {
 bool inChild(std::size_t bytes, const std::function<bool(std::byte*)>& work, std::byte* to) {
     // The first byte says that the others are there.
     const SharedBytes shared(bytes + 1);
+    const std::uint64_t mostMemory = memoryFor(bytes);
     const pid_t parent = ::getpid();
     const pid_t child = ::fork();
     if (child < 0) fail(std::generic_category().message(errno));
-    if (child == 0) runChild(parent, work, shared.get());
+    if (child == 0) runChild(parent, mostMemory, work, shared.get());
     int status = 0;
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }

@@ -7,8 +7,9 @@
 namespace deltasplat {
 
 /// Runs `work` in a child process, so that what ends the process ends only that: for libraries that
-/// do so at foreign bytes. The child prints nothing, has one minute of processor time, no thread
-/// but its own and no signal handlers, and ends with the thread that called this.
+/// do so at foreign bytes. The child prints nothing, has one minute of processor time, no more
+/// memory than is left to this process (nor than 64 times what it writes, and a GiB), no thread but
+/// its own and no signal handlers, and ends with the thread that called this.
 /// @param work  writes `bytes` bytes to its argument; returns false, or throws, if it cannot
 /// @param to    what it wrote
 /// @return whether it was done
