@@ -87,6 +87,17 @@ std::string slice(const std::string& series, const std::string& description, int
            element(0x7fe0, 0x10, "OW", bytesOf(pixels));
 }
 
+// Slices without extension in folders of a folder that holds a logo alone.
+void writeStudy() {
+    for (const std::string name : {"head", "legs"}) {
+        std::filesystem::create_directories("study/" + name);
+        const std::string series = name == "head" ? "1.2.8" : "1.2.9";
+        for (int z = 0; z < 2; ++z)
+            writeBytes("study/" + name + "/IM" + std::to_string(z), slice(series, name, 3, z));
+    }
+    writeBytes("study/logo.png", "a logo");
+}
+
 }  // namespace
 
 void writeSeveral() {
@@ -104,4 +115,5 @@ void writeSeveral() {
         writeBytes("series/b" + std::to_string(z), slice("1.2.2", "Scout", 5, 2 * z));
     }
     writeBytes("series/c", dicomHead("1.2.3", "SR", "Dose report"));
+    writeStudy();
 }

@@ -134,3 +134,14 @@ deltasplat_cli_test(several.list_json.series ARGS info --list --json series
 deltasplat_cli_test(several.diff.series ARGS diff series thorax --series 1.2.1 STDOUT_MATCHES "PASS")
 deltasplat_cli_test(several.diff_other.series EXIT 2 ARGS diff series thorax --series 1.2.2
     STDOUT_MATCHES "FAILURE")
+
+# A study is the slices below it, whatever else lies there.
+deltasplat_cli_test(several.list.study ARGS info --list study
+    STDOUT_MATCHES "^study
+  study  uint16  -  [(]0, 0, 0[)] to [(]2, 1, 1[)]  series 1.2.8: CT, head
+  study  uint16  -  [(]0, 0, 0[)] to [(]2, 1, 1[)]  series 1.2.9: CT, legs
+")
+deltasplat_cli_test(several.asks.study EXIT 3 ARGS render study -o out.exr
+    STDERR_MATCHES "study: got 2 DICOM series: 1.2.8 [(]CT, head, 3x2x2[)], 1.2.9 [(]CT, legs, 3x2x2[)]; expected one, chosen by --series UID")
+deltasplat_cli_test(several.one_file ARGS info study/legs/IM1
+    STDOUT_MATCHES "grid +IM1.*dims +3 x 2 x 1.*range +10 to 15")

@@ -167,6 +167,16 @@ TEST(DicomFiles, StudiesListTheirSeries) {
     EXPECT_EQ(readVolume("disc", options).box.dims(), glm::ivec3(3, 2, 2));
 }
 
+// On a disc slices may lie on top and below; in other folders those on top are what is meant.
+TEST(DicomFiles, SlicesAboveOthers) {
+    const TempFolder folder;
+    writeDisc({"1.2.5"});
+    writeBytes("disc/top", sliceOf("1.2.5", 2).bytes());
+    EXPECT_EQ(readVolume("disc").box.dims(), glm::ivec3(3, 2, 3));
+    std::filesystem::remove("disc/DICOMDIR");
+    EXPECT_EQ(readVolume("disc").box.dims(), glm::ivec3(3, 2, 1));
+}
+
 // Slices that have lost their headers are missed on discs as well; a broken link elsewhere is not.
 TEST(DicomFiles, CutSlicesOnDiscs) {
     const TempFolder folder;

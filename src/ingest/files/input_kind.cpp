@@ -196,29 +196,26 @@ bool areNamedAsStack(const Files& images) {
            });
 }
 
-// Returns the slices that lie below a folder without any. Pictures beside them are passed over,
-// unless they are named as a stack and more than the slices.
-std::optional<InputKind> findStudy(const std::filesystem::path& folder, const Files& all,
-                                   const Listener& listener) {
-    Study study{all, {}};
-    addSlicesBelow(folder, 0, study);
-    if (study.dicom.empty()) return {};
+// Returns the slices in a folder, or those below it if it has none or is a disc's. Pictures beside
+// them are passed over, unless they are named as a stack and more than the slices below.
+std::optional<InputKind> findSlices(const std::filesystem::path& folder, const Files& all,
+                                    const Listener& listener) {
+    Study study{all, filesThat(all, isSlice)};
+    const bool hasOwn = !study.dicom.empty();
     const bool isDisc = std::any_of(all.begin(), all.end(), isContents);
+    if (hasOwn) requireNoCutSlice(folder, all, study.dicom);
+    if (!hasOwn || isDisc) addSlicesBelow(folder, 0, study);
+    if (study.dicom.empty()) return {};
     const Files images = filesThat(all, isImageName);
-    if (!isDisc && areNamedAsStack(images) && images.size() > study.dicom.size()) return {};
+    const bool isStack = areNamedAsStack(images) && images.size() > study.dicom.size();
+    if (isStack && !hasOwn && !isDisc) return {};
     warnOfOthers(folder, study.all, study.dicom, "DICOM", listener);
     return InputKind{Format::kDicom, folderName(folder), study.dicom};
 }
 
 InputKind findInFolder(const std::filesystem::path& folder, const Listener& listener) {
     const Files all = filesIn(folder);
-    const Files dicom = filesThat(all, isSlice);
-    if (!dicom.empty()) {
-        requireNoCutSlice(folder, all, dicom);
-        warnOfOthers(folder, all, dicom, "DICOM", listener);
-        return {Format::kDicom, folderName(folder), dicom};
-    }
-    if (std::optional<InputKind> study = findStudy(folder, all, listener)) return *study;
+    if (std::optional<InputKind> slices = findSlices(folder, all, listener)) return *slices;
     const Files images = filesThat(all, isImageName);
     if (images.empty()) {
         const Files grids = filesThat(all, [](const auto& file) { return isVdbName(file); });
