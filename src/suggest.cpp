@@ -38,6 +38,8 @@ std::string suggestion(const std::string& text, const std::vector<std::string>& 
     std::size_t best = text.size() / 3 + 1;
     std::string found;
     for (const std::string& word : words) {
+        const std::size_t longer = std::max(text.size(), word.size());
+        if (longer - std::min(text.size(), word.size()) >= best) continue;
         const std::size_t distance = editDistance(text, word);
         if (distance >= best) continue;
         best = distance;

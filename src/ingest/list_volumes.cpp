@@ -39,8 +39,9 @@ void addMetadata(const VdbMetadata& metadata, const VdbGrid& grid, const std::st
 
 std::vector<VolumeEntry> listVdb(const std::filesystem::path& path) {
     const VdbFile file(path);
-    const VdbGrid* const preferred = defaultGrid(file);
+    const VdbGrid* const preferred = toldDefaultGrid(file);
     std::vector<VolumeEntry> entries;
+    VdbBytes bytes = file.bytes();
     for (const VdbGrid& grid : file.grids()) {
         VolumeEntry entry;
         entry.name = grid.name;
@@ -48,7 +49,10 @@ std::vector<VolumeEntry> listVdb(const std::filesystem::path& path) {
         entry.scalar = grid.isScalar();
         entry.preferred = &grid == preferred;
         try {
-            addMetadata(file.metadata(grid), grid, path.string(), entry);
+            const VdbFile::Summary summary = file.summary(grid, bytes);
+            entry.obstacle = summary.obstacle;
+            if (!entry.obstacle.empty()) entry.scalar = false;
+            addMetadata(summary.metadata, grid, path.string(), entry);
         } catch (const Error&) {
             // Grids of other kinds need not be understood; what is wrong with one is said when it
             // is read.

@@ -31,6 +31,10 @@ deltasplat_cli_test(convert.all_grids ARGS convert two.vdb out.vdb CREATES out.v
 deltasplat_cli_test(convert.one_grid ARGS convert two.vdb out.vdb --grid heat CREATES out.vdb)
 deltasplat_cli_test(convert.other_grids ARGS convert mixed.vdb out.vdb CREATES out.vdb
     STDERR "deltasplat: warning: mixed.vdb: left out velocity (vec3s)")
+deltasplat_cli_test(convert.other_type ARGS convert other_type.vdb out.vdb CREATES out.vdb
+    STDERR "deltasplat: warning: other_type.vdb: left out density (uint8)")
+deltasplat_cli_test(convert.frustum_first ARGS convert frustum_first.vdb out.vdb CREATES out.vdb
+    STDERR "deltasplat: warning: frustum_first.vdb: left out density (float, a NonlinearFrustumMap transform)")
 deltasplat_cli_test(convert.first_grid ARGS convert two.vdb out_13x13x13_float32.raw
     CREATES out_13x13x13_float32.raw
     STDERR "deltasplat: warning: two.vdb: reading grid \"density\" of 2 scalar grids (--grid chooses another)

@@ -7,6 +7,12 @@ deltasplat_cli_test(delta.fine.empty ARGS delta empty.vdb d.vdb CREATES d.vdb
     STDERR "deltasplat: warning: empty.vdb: grid \"density\": no active voxels")
 deltasplat_cli_test(delta.fine.mixed ARGS delta mixed.vdb d.vdb --scalars-only --max-error 0 CREATES d.vdb
     STDERR "deltasplat: warning: mixed.vdb: left out velocity (vec3s)")
+deltasplat_cli_test(delta.fine.frustum_first
+    ARGS delta frustum_first.vdb d.vdb --scalars-only CREATES d.vdb
+    STDERR "deltasplat: warning: frustum_first.vdb: left out density (float, a NonlinearFrustumMap transform)")
+deltasplat_cli_test(delta.loses_frustum EXIT 1 ARGS delta frustum_first.vdb d.vdb
+    STDERR "deltasplat: warning: frustum_first.vdb: left out density (float, a NonlinearFrustumMap transform)
+deltasplat: frustum_first.vdb: got density (float, a NonlinearFrustumMap transform), which no delta grid holds; expected scalar grids alone (--scalars-only leaves out others)")
 deltasplat_cli_test(delta.fine.voxels ARGS delta two.vdb d.vdb --no-pack CREATES d.vdb)
 deltasplat_cli_test(delta.fine.voxels_empty ARGS delta empty.vdb d.vdb --no-pack CREATES d.vdb
     STDERR "deltasplat: warning: empty.vdb: grid \"density\": no active voxels")

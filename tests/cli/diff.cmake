@@ -106,6 +106,12 @@ deltasplat_diff(others_not_asked_for 0 "grid          density.*PASS" mixed.vdb m
 deltasplat_diff(cache 2 "grid          flags.*grid          density.*not compared  phi_obstacle [(]NaN or infinite values[)]
 FAILURE" cache.vdb cache.vdb)
 deltasplat_diff(cache_ignored 0 "PASS" cache.vdb cache.vdb --ignore-missing)
+deltasplat_diff(other_type 2 "grid          heat.*not compared  density [(]uint8[)]
+FAILURE" other_type.vdb other_type.vdb)
+deltasplat_diff(frustum_first 2
+    "grid          heat.*not compared  density [(]a NonlinearFrustumMap transform[)]
+FAILURE" frustum_first.vdb frustum_first.vdb)
+deltasplat_diff(unnamed 0 "grid          density.*PASS" unnamed.vdb unnamed.vdb)
 deltasplat_diff(one_grid 0 "grid          density.*PASS" two.vdb three.vdb --grid density)
 deltasplat_diff(other_grid 2 "grid          heat.*FAILURE" two.vdb three.vdb --grid heat)
 deltasplat_diff(no_common_grid 2 "only in A     density
@@ -156,10 +162,10 @@ deltasplat_diff_refusal(no_such_grid
     "two.vdb: got no grid \"smoke\"; expected one of density (float), heat (float)"
     two.vdb three.vdb --grid smoke)
 deltasplat_diff_refusal(vectors
-    "vectors.vdb: got only velocity (vec3s); expected a scalar grid (float, double, int32, int64, bool or mask)"
+    "vectors.vdb: got only velocity (vec3s); expected a scalar grid (float, double, half, int32, int64, bool or mask)"
     ball.vdb vectors.vdb)
 deltasplat_diff_refusal(name_twice
-    "same_names.vdb: got several grids named \"density\" or none; expected grids that each have a name of their own (or --grid NAME)"
+    "same_names.vdb: got several grids named \"density\"; expected grids that each have a name of their own (or --grid NAME)"
     same_names.vdb two.vdb)
 
 # Of files that name no place, that is said where it counts.

@@ -34,7 +34,7 @@ deltasplat_bad_input(nan_raw
     "nan_4x4x4_float32.raw: got 2 NaN or infinite values, the first at (1, 2, 3); expected finite values (--nan VALUE replaces them)"
     nan_4x4x4_float32.raw)
 
-set(scalar "a scalar grid (float, double, int32, int64, bool or mask)")
+set(scalar "a scalar grid (float, double, half, int32, int64, bool or mask)")
 deltasplat_bad_input(garbage "garbage.vdb: got no OpenVDB data; expected a .vdb file" garbage.vdb)
 deltasplat_bad_input(no_bytes "zero.vdb: got no OpenVDB data; expected a .vdb file" zero.vdb)
 foreach(file cut head_only)
@@ -82,6 +82,37 @@ deltasplat_cli_test(input.fine.nan ARGS render nan.vdb -o out.exr --nan 0 CREATE
     STDERR "deltasplat: warning: nan.vdb: grid \"density\": 2 NaN or infinite active values replaced by 0")
 deltasplat_cli_test(input.fine.mixed ARGS render mixed.vdb -o out.exr CREATES out.exr)
 deltasplat_cli_test(input.fine.second_grid ARGS info two.vdb --grid heat STDOUT_MATCHES "grid +heat")
+
+# The grid that is meant and cannot be read is never replaced by the next.
+set(other_type "other_type.vdb: got grid \"density\" of type uint8; expected ${scalar}")
+set(frustum_first
+    "frustum_first.vdb: grid \"density\": got a NonlinearFrustumMap transform; expected a linear one (no frustum)")
+foreach(kind other_type frustum_first)
+    deltasplat_cli_test(input.kind.${kind}.render EXIT 3 STDERR "deltasplat: ${${kind}}"
+                        ARGS render ${kind}.vdb -o out.exr)
+    deltasplat_cli_test(input.kind.${kind}.npy EXIT 3 STDERR "deltasplat: ${${kind}}"
+                        ARGS convert ${kind}.vdb out.npy)
+    deltasplat_cli_test(input.kind.${kind}.asked_for ARGS render ${kind}.vdb -o out.exr --grid heat
+                        CREATES out.exr)
+endforeach()
+deltasplat_cli_test(input.kind.other_type.info ARGS info other_type.vdb
+    STDOUT_MATCHES "grid +heat.*not read +density .uint8.")
+deltasplat_cli_test(input.kind.frustum_first.info EXIT 3 STDERR "deltasplat: ${frustum_first}"
+    ARGS info frustum_first.vdb STDOUT_MATCHES "grid +heat")
+deltasplat_cli_test(input.kind.list ARGS info --list other_type.vdb frustum_first.vdb
+    STDOUT_MATCHES "density +uint8 .* not read: type uint8
+  heat .*density +float .* not read: a NonlinearFrustumMap transform
+  heat ")
+deltasplat_cli_test(input.kind.batch EXIT 3 ARGS render "other_*.vdb" -o "out/{grid}.exr"
+    STDERR_MATCHES ".*density.*of type uint8.*" CREATES out)
+deltasplat_cli_test(input.fine.unnamed ARGS info unnamed.vdb --grid ""
+    STDOUT_MATCHES "values? +3")
+deltasplat_cli_test(input.fine.long_name ARGS info --list long_name.vdb
+    STDOUT_MATCHES "n  float  fog volume  [^
+]*
+  d                                                 float  fog volume")
+deltasplat_cli_test(input.many EXIT 3 ARGS render many.vdb -o out.exr --grid smoke
+    STDERR_MATCHES "deltasplat: many.vdb: got no grid .smoke.; expected one of density .float., v0 .*, v30 .vec3s. and 19 others")
 deltasplat_cli_test(input.fine.plain ARGS info plain.raw --dims 8x4x8 --type uint16 --endian big
     STDOUT_MATCHES "dims +8 x 4 x 8")
 deltasplat_cli_test(input.fine.two_files ARGS info ball.vdb cube_8x8x8_uint8.raw

@@ -154,7 +154,26 @@ void writeOtherBalls() {
     writeBytes("odd_grids.c.vdb", readBytes("same_names.vdb"));
 }
 
+// Grids of kinds that are not read, before one that is; grids that are found in odd ways.
+void writeOddGrids() {
+    writeVdb("frustum_first.vdb", {frustum(), ball("heat")});
+    writeVdb("other_type.vdb", {ball("density"), ball("heat")});
+    std::string bytes = readBytes("other_type.vdb");
+    bytes.replace(bytes.find("Tree_float"), 10, "Tree_uint8");
+    writeBytes("other_type.vdb", bytes);
+    writeVdb("unnamed.vdb",
+             {ball("density"), filled<openvdb::FloatGrid>("", openvdb::GRID_UNKNOWN, 3)});
+    writeVdb("long_name.vdb", {ball(std::string(300, 'n')), ball("d")});
+    openvdb::GridPtrVec many{ball("density")};
+    for (int i = 0; i < 50; ++i) {
+        many.push_back(vectors());
+        many.back()->setName("v" + std::to_string(i));
+    }
+    writeVdb("many.vdb", many);
+}
+
 void writeVdbFiles() {
+    writeOddGrids();
     writeVdb("ball.vdb", {ball("density")});
     const auto surface =
         openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(6, openvdb::Vec3f(0), 0.5);

@@ -20,7 +20,7 @@ using testing::readBytes;
 using testing::TempFolder;
 using testing::writeBytes;
 
-constexpr const char* kScalar = "a scalar grid (float, double, int32, int64, bool or mask)";
+constexpr const char* kScalar = "a scalar grid (float, double, half, int32, int64, bool or mask)";
 
 void expectInput(const std::string& message, const std::string& file,
                  const ReadOptions& options = {}) {
@@ -158,11 +158,11 @@ TEST(ReadVdbError, OtherVersions) {
     const TempFolder folder;
     writeGrids("a.vdb", {noise("g", 2)});
     std::string bytes = readBytes("a.vdb");
-    for (const int version : {221, 225}) {
+    for (const int version : {221, 226}) {
         bytes[8] = char(version);
         writeBytes("a.vdb", bytes);
         expectInput(
-            "a.vdb: got OpenVDB file version " + std::to_string(version) + "; expected 222..224",
+            "a.vdb: got OpenVDB file version " + std::to_string(version) + "; expected 222..225",
             "a.vdb");
     }
 }

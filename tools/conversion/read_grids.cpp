@@ -2,18 +2,22 @@
 #include "conversion/read_grids.h"
 
 #include <string>
+#include <vector>
+
+#include "name_list.h"
 
 namespace deltasplat {
 
 std::string forEachScalarGrid(const std::filesystem::path& input, const ReadOptions& options,
                               const std::function<void(Volume)>& use, const Listener& listener) {
-    std::string others;
+    std::vector<std::string> left;
     VolumeVisitor visitor;
     visitor.volume = use;
     visitor.other = [&](const std::string& name, const std::string& type) {
-        others += (others.empty() ? "" : ", ") + name + " (" + type + ")";
+        left.push_back(name + " (" + type + ")");
     };
     forEachVolume(input, options, visitor, listener);
+    const std::string others = nameList(left);
     if (!others.empty()) listener.warn(input.string() + ": left out " + others);
     return others;
 }

@@ -14,6 +14,7 @@
 #include "ingest/delta/delta_origin.h"
 #include "ingest/files/file_name.h"
 #include "listener_part.h"
+#include "name_list.h"
 #include "number_text.h"
 #include "options/input_options.h"
 #include "options/parse.h"
@@ -154,11 +155,11 @@ void warnOfWholeNumbers(const Volume& volume, const DeltaFileEntry& entry,
 
 // Asked before hours of work, as far as it can be known.
 void requireScalars(const DeltaCommand& command, const std::filesystem::path& input) {
-    const bool mayHoldOthers = isVdbName(input) && command.read.gridName.empty();
+    const bool mayHoldOthers = isVdbName(input) && !command.read.gridName;
     if (command.scalarsAlone || !mayHoldOthers) return;
     const GridList grids = listGrids(input);
     if (!grids.scalar.empty() && !grids.others.empty())
-        refuseOthers(input, joinNames(grids.others));
+        refuseOthers(input, nameList(grids.others));
 }
 
 ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,

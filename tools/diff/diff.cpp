@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -36,29 +38,27 @@ constexpr double kReadA = 0.45;
 constexpr double kReadB = 0.9;
 
 struct GridPair {
-    std::string a;  // empty: the default grid
-    std::string b;
+    std::optional<std::string> a;  // empty: the default grid
+    std::optional<std::string> b;
 };
-
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 std::vector<std::string> without(const std::vector<std::string>& names,
                                  const std::vector<std::string>& others) {
+    const std::set<std::string> left(others.begin(), others.end());
     std::vector<std::string> rest;
     for (const std::string& name : names) {
-        if (!contains(others, name)) rest.push_back(name);
+        if (!left.contains(name)) rest.push_back(name);
     }
     return rest;
 }
 
 // Grids are told apart by their names alone.
 void requireNames(const std::filesystem::path& file, const std::vector<std::string>& names) {
+    std::set<std::string> known;
     for (const std::string& name : names) {
-        if (!name.empty() && std::count(names.begin(), names.end(), name) == 1) continue;
+        if (known.insert(name).second) continue;
         throw Error(ErrorCode::kInput,
-                    gotExpected(file.string(), "several grids named \"" + name + "\" or none",
+                    gotExpected(file.string(), "several grids named \"" + name + "\"",
                                 "grids that each have a name of their own (or --grid NAME)"));
     }
 }
@@ -69,25 +69,24 @@ void noteOthers(const std::filesystem::path& file, std::vector<std::string>& onl
     if (!isVdbName(file)) return;
     const GridList grids = listGrids(file);
     notCompared.insert(notCompared.end(), grids.others.begin(), grids.others.end());
-    if (!grids.preferred.empty()) onlyHere = without(grids.scalar, {grids.preferred});
+    if (grids.preferred) onlyHere = without(grids.scalar, {*grids.preferred});
 }
 
 // Finds what is to be compared with what, and notes what is in one file only.
 std::vector<GridPair> pairGrids(const DiffOptions& options, FileDiff& diff) {
-    const std::string& asked = options.read.gridName;
-    if (!asked.empty()) return {{asked, asked}};
+    if (const auto& asked = options.read.gridName) return {{asked, asked}};
     if (!isVdbName(options.a) || !isVdbName(options.b)) {
         noteOthers(options.a, diff.onlyInA, diff.notCompared);
         noteOthers(options.b, diff.onlyInB, diff.notCompared);
-        return {{"", ""}};
+        return {{}};
     }
     const GridList a = listGrids(options.a);
     const GridList b = listGrids(options.b);
     for (const std::string& grid : a.others) diff.notCompared.push_back(grid);
     for (const std::string& grid : without(b.others, a.others)) diff.notCompared.push_back(grid);
     // Without a choice, names do not matter; without any grid, reading says so.
-    if (a.scalar.size() == 1 && b.scalar.size() == 1) return {{"", ""}};
-    if (a.scalar.empty() || b.scalar.empty()) return {{"", ""}};
+    if (a.scalar.size() == 1 && b.scalar.size() == 1) return {{a.scalar[0], b.scalar[0]}};
+    if (a.scalar.empty() || b.scalar.empty()) return {{}};
     requireNames(options.a, a.scalar);
     requireNames(options.b, b.scalar);
     diff.onlyInA = without(a.scalar, b.scalar);
@@ -109,9 +108,9 @@ ReadOptions optionsFor(const std::filesystem::path& file, const std::filesystem:
 }
 
 // @param packed  whether values may stay in the file
-Volume readOne(const std::filesystem::path& file, const std::string& grid, ReadOptions options,
-               bool packed, const Listener& listener) {
-    options.gridName = isVdbName(file) ? grid : "";
+Volume readOne(const std::filesystem::path& file, const std::optional<std::string>& grid,
+               ReadOptions options, bool packed, const Listener& listener) {
+    options.gridName = isVdbName(file) ? grid : std::nullopt;
     options.keepSource = true;
     if (packed) {
         if (auto volume = readPackedVolume(file, options, listener)) return std::move(*volume);
@@ -184,7 +183,10 @@ void addComparison(const DiffOptions& options, const GridPair& pair, bool amongO
         diff.grids.push_back(compareGrids(options, pair, stage));
     } catch (const NotFinite&) {
         if (!amongOthers) throw;
-        diff.notCompared.push_back(pair.a + " (NaN or infinite values)");
+        diff.notCompared.push_back(pair.a.value_or("") + " (NaN or infinite values)");
+    } catch (const UnreadableGrid& error) {
+        if (!amongOthers) throw;
+        diff.notCompared.push_back(pair.a.value_or("") + " (" + error.obstacle + ")");
     }
 }
 

@@ -15,6 +15,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Row = std::array<std::string, 4>;
 
+// One long name does not make every line as long.
+constexpr std::size_t kWidest = 48;
+
 std::string indexText(const glm::ivec3& index) {
     return "(" + joinNumbers({double(index.x), double(index.y), double(index.z)}, ", ") + ")";
 }
@@ -27,7 +30,8 @@ std::string boxText(const VolumeEntry& volume) {
 
 std::string remarks(const VolumeEntry& volume) {
     std::string text = volume.series ? "  series " + seriesText(volume) : "";
-    if (!volume.scalar) return text + "  not read";
+    if (!volume.scalar)
+        return text + "  not read" + (volume.obstacle.empty() ? "" : ": " + volume.obstacle);
     if (volume.delta) text += "  delta grid";
     if (volume.volumes > 1) text += "  " + std::to_string(volume.volumes) + " volumes";
     return text + (volume.preferred ? "  default" : "");
@@ -42,14 +46,16 @@ std::string tableText(const std::vector<VolumeEntry>& volumes) {
     std::array<std::size_t, 4> widths{};
     for (const VolumeEntry& volume : volumes) {
         const Row row = rowOf(volume);
-        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+        for (std::size_t i = 0; i < row.size(); ++i)
+            widths[i] = std::max(widths[i], std::min(row[i].size(), kWidest));
     }
     std::string text;
     for (const VolumeEntry& volume : volumes) {
         const Row row = rowOf(volume);
         std::string line;
         for (std::size_t i = 0; i < row.size(); ++i)
-            line += "  " + row[i] + std::string(widths[i] - row[i].size(), ' ');
+            line +=
+                "  " + row[i] + std::string(widths[i] - std::min(widths[i], row[i].size()), ' ');
         line += remarks(volume);
         text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
     }

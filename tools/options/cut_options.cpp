@@ -165,7 +165,7 @@ FileAndName fileAndGrid(const std::filesystem::path& mask) {
 // What the volume was read with is not all meant for its mask.
 ReadOptions maskOptions(const FileAndName& mask, const ReadOptions& read) {
     ReadOptions options;
-    options.gridName = mask.name;
+    if (!mask.name.empty()) options.gridName = mask.name;
     options.nanValue = read.nanValue;
     options.raw = read.raw;
     RawFormat named;

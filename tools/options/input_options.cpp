@@ -41,10 +41,11 @@ Parser<bool> palette() {
 void addInputOptions(CLI::App& app, ReadOptions& options) {
     OptionGroup vdb(app, "Input, .vdb");
     vdb.addValue("--grid", "NAME", options.gridName, anyText(),
-                 "Grid to read (default where one is wanted: the one named\n"
-                 "density, else the first fog volume, else the first other scalar\n"
-                 "grid, phi_*, flags, shadow and other helpers last; otherwise all\n"
-                 "of them; vector and point grids are never read)");
+                 "Grid to read, \"\" being one without a name (default where one is\n"
+                 "wanted: the one named density, else the first fog volume, else\n"
+                 "the first other scalar grid, phi, phi_*, flags, shadow and other\n"
+                 "helpers last; otherwise all of them; vector and point grids are\n"
+                 "never read)");
     vdb.addValue("--level-set", "fog|keep", options.levelSetToFog, levelSet(),
                  withDefault("Turn level sets into fog, or keep their distances",
                              levelSetName(options.levelSetToFog)));

@@ -21,11 +21,11 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<std::string> gridsOf(const fs::path& input, const RenderCommand& command) {
-    const std::string& chosen = command.picture.read.gridName;
-    if (!chosen.empty()) return {chosen};
+    if (const auto& chosen = command.picture.read.gridName) return {*chosen};
     std::vector<std::string> grids;
+    // What is in the way of one that cannot be read is said in its picture's place.
     for (const VolumeEntry& entry : listVolumes(input, command.picture.read))
-        if (entry.scalar) grids.push_back(entry.name);
+        if (entry.scalar || !entry.obstacle.empty()) grids.push_back(entry.name);
     return grids;
 }
 
@@ -42,7 +42,7 @@ class Batch {
             if (const auto place = placeOf(file)) inputs_.insert(*place);
         const InputParts parts = partsOfInput(found.file, found.folder);
         const bool hasGrids = isVdbName(found.file);
-        if (!output_ || !output_->hasGrid() || !hasGrids) return add(found, parts, "");
+        if (!output_ || !output_->hasGrid() || !hasGrids) return add(found, parts, {});
         std::vector<std::string> grids;
         try {
             grids = gridsOf(found.file, command_);
@@ -51,7 +51,7 @@ class Batch {
         }
         for (const std::string& grid : grids) add(found, parts, grid);
         // What is wrong is said by who reads it.
-        if (grids.empty()) add(found, parts, "");
+        if (grids.empty()) add(found, parts, {});
     }
 
     void fail(const fs::path& file, const Error& error) {
@@ -90,8 +90,8 @@ class Batch {
         return error ? fs::absolute(file).lexically_normal() : path;
     }
 
-    void add(const FoundFile& found, InputParts parts, const std::string& grid) {
-        parts.grid = grid.empty() ? parts.name : grid;
+    void add(const FoundFile& found, InputParts parts, const std::optional<std::string>& grid) {
+        parts.grid = grid && !grid->empty() ? *grid : parts.name;
         BatchItem item{found.file, found.folder, command_.output, {}, grid, {}};
         if (output_) item.output = output_->of(parts, found.file);
         if (stats_) item.stats = stats_->of(parts, found.file);
@@ -157,7 +157,8 @@ class Batch {
 }  // namespace
 
 std::string nameOfItem(const BatchItem& item) {
-    return item.grid.empty() ? item.input.string() : item.input.string() + ", " + item.grid;
+    if (!item.grid) return item.input.string();
+    return item.input.string() + ", " + (item.grid->empty() ? "\"\"" : *item.grid);
 }
 
 std::vector<BatchItem> findBatch(const RenderCommand& command, const Listener& listener) {

@@ -16,9 +16,9 @@ struct BatchItem {
     std::filesystem::path input;
     std::filesystem::path folder;  ///< relative to the pattern's
     std::filesystem::path output;
-    std::filesystem::path stats;   ///< empty: none
-    std::string grid;              ///< empty: as the command says
-    std::optional<Error> failure;  ///< why it cannot be made
+    std::filesystem::path stats;      ///< empty: none
+    std::optional<std::string> grid;  ///< empty: as the command says
+    std::optional<Error> failure;     ///< why it cannot be made
 };
 
 /// Returns its file, and the grid if that is said.

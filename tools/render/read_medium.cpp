@@ -13,6 +13,7 @@
 #include "ingest/files/input_kind.h"
 #include "medium/part_looks.h"
 #include "medium/part_sampler.h"
+#include "name_list.h"
 #include "number_text.h"
 #include "optics/blackbody.h"
 #include "optics/color_factor.h"
@@ -30,10 +31,9 @@ constexpr double kMostShare = 20;
 constexpr double kKelvinOfOne = 2000;
 
 std::string namesOf(const std::vector<VolumeEntry>& entries) {
-    std::string names;
-    for (const VolumeEntry& entry : entries)
-        names += (names.empty() ? "" : ", ") + entry.name + " (" + entry.type + ")";
-    return names;
+    std::vector<std::string> names;
+    for (const VolumeEntry& entry : entries) names.push_back(entry.name + " (" + entry.type + ")");
+    return nameList(names);
 }
 
 void requireVdb(const std::filesystem::path& input, const std::string& option) {

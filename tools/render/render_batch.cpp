@@ -65,16 +65,16 @@ double bytesFor(const RenderCommand& command) {
 PictureFacts factsOf(const BatchItem& item, const RenderCommand& command) {
     try {
         for (const VolumeEntry& entry : listVolumes(item.input, command.picture.read)) {
-            if (item.grid.empty() ? entry.preferred : entry.name == item.grid)
+            if (item.grid ? entry.name == item.grid : entry.preferred)
                 return {entry.name,
                         entry.box ? entry.box->dims() : glm::ivec3(0),
                         {},
                         entry.box && entry.box->empty()};
         }
     } catch (const Error&) {
-        return {item.grid, glm::ivec3(0), {}, false};
+        return {item.grid.value_or(""), glm::ivec3(0), {}, false};
     }
-    return {item.grid, glm::ivec3(0), {}, false};
+    return {item.grid.value_or(""), glm::ivec3(0), {}, false};
 }
 
 // Values are shown as greys.
@@ -284,11 +284,11 @@ RenderCommand commandOf(const RenderCommand& command, const BatchItem& item) {
     one.input = item.input;
     one.output = item.output;
     one.stats = item.stats;
-    if (!item.grid.empty()) one.picture.read.gridName = item.grid;
+    if (item.grid) one.picture.read.gridName = item.grid;
     if (command.slate) {
         std::vector<std::string>& lines = one.annotations.lines;
         lines.insert(lines.begin(), item.input.filename().string());
-        if (!item.grid.empty()) lines.front() += ", " + item.grid;
+        if (item.grid) lines.front() += ", " + *item.grid;
     }
     return one;
 }

@@ -103,7 +103,9 @@ void showFrame(std::optional<int> frame, const std::filesystem::path& input,
                     gotExpected(scene.file.string(), "no filePath of a volume", "a .vdb"));
     }
     command.picture.worldFromInput = volume.worldFromVolume;
-    if (!scene.isGridGiven) command.picture.read.gridName = volume.grid;
+    if (scene.isGridGiven) return;
+    command.picture.read.gridName.reset();
+    if (!volume.grid.empty()) command.picture.read.gridName = volume.grid;
 }
 
 std::vector<FrameFiles> withScene(const SceneChoice& scene, std::vector<FrameFiles> frames) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "conversion/run_conversion.h"
 #include "deltasplat/convert/write_volume.h"
@@ -11,6 +12,7 @@
 #include "ingest/files/input_files.h"
 #include "ingest/files/input_kind.h"
 #include "listener_part.h"
+#include "name_list.h"
 #include "options/input_options.h"
 #include "subcommands.h"
 
@@ -60,16 +62,20 @@ void requireDeltas(const std::filesystem::path& input, const Volume& volume) {
 }
 
 // The delta grids that the output can hold, by name. Without any, reading says what is wrong.
-std::vector<std::string> chooseGrids(const RestoreCommand& command,
-                                     const std::filesystem::path& input, const Listener& listener,
-                                     ConversionStats& stats) {
+std::vector<std::optional<std::string>> chooseGrids(const RestoreCommand& command,
+                                                    const std::filesystem::path& input,
+                                                    const Listener& listener,
+                                                    ConversionStats& stats) {
     requireVdb(input);
-    if (!command.read.gridName.empty()) return {command.read.gridName};
+    if (command.read.gridName) return {command.read.gridName};
     GridList grids = listGrids(input);
-    if (grids.deltas.empty()) return {grids.scalar.empty() ? "" : grids.scalar.front()};
+    if (grids.deltas.empty()) {
+        if (grids.scalar.empty()) return {std::nullopt};
+        return {grids.scalar.front()};
+    }
     const std::string where = input.string() + ": ";
     if (!grids.ordinary.empty()) {
-        listener.warn(where + "left out " + joinNames(grids.ordinary) +
+        listener.warn(where + "left out " + nameList(grids.ordinary) +
                       ", which are no delta grids");
     }
     if (!command.files.toVdb() && grids.deltas.size() > 1) {
@@ -78,14 +84,14 @@ std::vector<std::string> chooseGrids(const RestoreCommand& command,
         grids.deltas.resize(1);
     }
     stats.lossless = grids.ordinary.empty() || !command.files.toVdb();
-    return grids.deltas;
+    return {grids.deltas.begin(), grids.deltas.end()};
 }
 
 std::vector<Volume> readInput(const RestoreCommand& command, const std::filesystem::path& input,
                               const Listener& listener, ConversionStats& stats) {
     std::vector<Volume> volumes;
-    const std::vector<std::string> names = chooseGrids(command, input, listener, stats);
-    for (const std::string& name : names) {
+    const auto names = chooseGrids(command, input, listener, stats);
+    for (const std::optional<std::string>& name : names) {
         const double done = double(volumes.size()) / double(names.size());
         ReadOptions options = command.read;
         options.gridName = name;

@@ -57,7 +57,7 @@ IndexBox indexBoxOf(const WorldBox& world, const glm::dmat4& worldFromIndex) {
 }
 
 std::string keyOf(const std::filesystem::path& input, const ReadOptions& options) {
-    return input.string() + '\n' + options.gridName;
+    return input.string() + (options.gridName ? '\n' + *options.gridName : "");
 }
 
 }  // namespace

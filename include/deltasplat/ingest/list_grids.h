@@ -13,10 +13,10 @@ namespace deltasplat {
 
 /// Names of the grids of a .vdb file, in file order.
 struct GridList {
-    std::vector<std::string> scalar;  ///< as ReadOptions::gridName takes them
-    std::string preferred;            ///< of the scalar ones, that read by default; or empty
-    std::vector<std::string> others;  ///< with their types, as "velocity (vec3s)"
-    std::vector<std::string> deltas;  ///< of the scalar ones, those that are delta grids
+    std::vector<std::string> scalar;       ///< as ReadOptions::gridName takes them
+    std::optional<std::string> preferred;  ///< the one read by default, if it can be
+    std::vector<std::string> others;       ///< with their types, as "velocity (vec3s)"
+    std::vector<std::string> deltas;       ///< of the scalar ones, those that are delta grids
     /// All that are no delta grids, with their types.
     std::vector<std::string> ordinary;
 };
@@ -36,8 +36,10 @@ struct VolumeEntry {
     std::string gridClass;        ///< as Volume::gridClass; "" where none is said
     std::optional<IndexBox> box;  ///< of its active voxels; empty optional where it is not said
     bool scalar = true;           ///< whether it can be read
-    bool delta = false;           ///< whether it is a delta grid
-    bool preferred = false;       ///< whether it is the one read by default
+    std::string obstacle;    ///< .vdb: why a grid of numbers cannot be read ("type uint32"); or
+                             ///< empty
+    bool delta = false;      ///< whether it is a delta grid
+    bool preferred = false;  ///< whether it is the one read by default
     std::optional<std::string> series;  ///< DICOM: as ReadOptions::series takes it
     std::string description;            ///< DICOM: what the series is said to be; or empty
     /// NIfTI and .npy: this volume stands for so many, which differ in their values alone; as

@@ -30,11 +30,12 @@ struct RawFormat {
 
 /// How to read a volume.
 struct ReadOptions {
-    /// .vdb: which grid; empty: `density`, else the first fog volume, else the first other scalar
-    /// grid, those that help solvers ("phi_obstacle", "flags", "shadow", ...) last.
-    std::string gridName;
-    bool levelSetToFog = true;       ///< .vdb: turn level sets into fog volumes; one whose
-                                     ///< background is not above 0 is kept, with a warning
+    /// .vdb: which grid, "" being one without a name. Empty: `density`, else the first fog volume,
+    /// else the first other scalar grid, `phi` and those that help solvers ("phi_obstacle",
+    /// "flags", "shadow", ...) last; an error if that cannot be read.
+    std::optional<std::string> gridName = {};
+    bool levelSetToFog = true;  ///< .vdb: turn level sets into fog volumes; one whose
+                                ///< background is not above 0 is kept, with a warning
     std::optional<double> nanValue;  ///< replaces NaN and infinities; empty: they are an error
     RawFormat raw;                   ///< .raw: what the bytes are
     /// NIfTI and .npy of more than three axes: which of their volumes, from 0 on; the fourth axis
@@ -98,13 +99,14 @@ struct VolumeVisitor {
     std::function<void(Volume)> volume;  ///< a scalar grid
     /// A scalar grid that is no valid volume; the others follow. Empty: the error is thrown.
     std::function<void(const Error&)> invalid;
-    /// Name and value type of a grid that is not scalar. Also that of a level set with NaN or
-    /// infinite values among other scalar grids, which is passed over like those.
+    /// Name and value type of a grid that is not scalar. Also of one among other scalar grids that
+    /// is passed over like those: a level set with NaN or infinite values, and, unless `invalid` is
+    /// there, one of a kind that is not read (a frustum).
     std::function<void(const std::string& name, const std::string& type)> other;
 };
 
 /// Reads the scalar grids of a file one after the other, so that only one is in memory: one volume
-/// for all but .vdb; a .vdb's grids in file order, or only `options.gridName` if that is not empty.
+/// for all but .vdb; a .vdb's grids in file order, or only that of `options.gridName`.
 /// @throw as readVolume, for what concerns the whole file
 void forEachVolume(const std::filesystem::path& file, const ReadOptions& options,
                    const VolumeVisitor& visitor, const Listener& listener = {});

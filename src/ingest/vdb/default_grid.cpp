@@ -16,15 +16,34 @@ namespace {
 constexpr std::array<std::string_view, 8> kHelpers{
     "flags", "shadow", "pressure", "obstacle", "obstacles", "collision", "divergence", "mask"};
 constexpr std::array<std::string_view, 2> kHelperBegins{"phi", "fractions"};
+// The surface of a liquid, which simulations of it keep for its own sake; their other names that
+// begin so are of obstacles and inflows.
+constexpr std::string_view kSurface = "phi";
 constexpr std::array<std::string_view, 4> kHelperEnds{"_noise", "_inflow", "_in", "_old"};
 
-bool isFog(const VdbFile& file, const VdbGrid& grid) {
-    try {
-        return gridClassOf(file.metadata(grid)) == kFogClass;
-    } catch (const Error&) {
-        // What is wrong with a grid that may not even be wanted is said when it is read.
-        return false;
+enum Rank { kNone, kHelper, kHelperFog, kSurfaceOfLiquid, kOther, kFog };
+
+Rank rankOf(const VdbFile& file, const VdbGrid& grid, VdbBytes& bytes) {
+    if (grid.vector) return kNone;
+    const std::string gridClass = gridClassOf(file.summary(grid, bytes).metadata);
+    // Of types that nobody knows, those are numbers that say what they are numbers of.
+    if (!grid.numeric && gridClass != kFogClass && gridClass != kLevelSetClass) return kNone;
+    const bool fog = gridClass == kFogClass;
+    const std::string name = grid.plainName();
+    if (lowerCase(name) == kSurface) return kSurfaceOfLiquid;
+    if (isHelperName(name)) return fog ? kHelperFog : kHelper;
+    return fog ? kFog : kOther;
+}
+
+// Null if no grid has the name.
+const VdbGrid* densityOf(const VdbFile& file) {
+    const VdbGrid* found = nullptr;
+    for (const VdbGrid& grid : file.grids()) {
+        if (grid.plainName() != "density") continue;
+        if (grid.numeric) return &grid;
+        if (!found) found = &grid;
     }
+    return found;
 }
 
 }  // namespace
@@ -39,20 +58,26 @@ bool isHelperName(const std::string& gridName) {
 }
 
 const VdbGrid* defaultGrid(const VdbFile& file) {
-    enum Rank { kNone, kHelper, kHelperFog, kOther, kFog, kDensity };
+    if (const VdbGrid* const density = densityOf(file)) return density;
     const VdbGrid* best = nullptr;
     Rank bestRank = kNone;
+    VdbBytes bytes = file.bytes();
     for (const VdbGrid& grid : file.grids()) {
-        if (!grid.isScalar()) continue;
-        if (grid.plainName() == "density") return &grid;
-        const bool fog = isFog(file, grid);
-        const Rank rank =
-            isHelperName(grid.plainName()) ? (fog ? kHelperFog : kHelper) : (fog ? kFog : kOther);
+        const Rank rank = rankOf(file, grid, bytes);
         if (rank <= bestRank) continue;
         best = &grid;
         bestRank = rank;
+        if (rank == kFog) break;
     }
     return best;
+}
+
+const VdbGrid* toldDefaultGrid(const VdbFile& file) {
+    try {
+        return defaultGrid(file);
+    } catch (const Error&) {
+        return nullptr;
+    }
 }
 
 }  // namespace deltasplat

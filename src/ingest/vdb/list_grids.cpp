@@ -14,7 +14,8 @@ GridList listGrids(const std::filesystem::path& file) {
     if (inputsAreConfined()) requireConfined(file);
     GridList list;
     const VdbFile vdb(file);
-    if (const VdbGrid* const preferred = defaultGrid(vdb)) list.preferred = preferred->name;
+    const VdbGrid* const preferred = toldDefaultGrid(vdb);
+    if (preferred && preferred->isScalar()) list.preferred = preferred->name;
     for (const VdbGrid& grid : vdb.grids()) {
         if (grid.isScalar()) {
             list.scalar.push_back(grid.name);

@@ -29,7 +29,9 @@ MediumGrids mediumGrids(const std::vector<VolumeEntry>& entries) {
         return "";
     };
     MediumGrids grids;
-    grids.emission = firstOf(kFires, [](const VolumeEntry& entry) { return entry.scalar; });
+    // One that cannot be read is the one that is meant all the same, and reading it says why.
+    grids.emission = firstOf(
+        kFires, [](const VolumeEntry& entry) { return entry.scalar || !entry.obstacle.empty(); });
     grids.color =
         firstOf(kColors, [](const VolumeEntry& entry) { return isColorType(entry.type); });
     grids.otherEmission = firstOf(kFires, [&](const VolumeEntry& entry) {

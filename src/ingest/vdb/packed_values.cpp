@@ -56,8 +56,8 @@ std::optional<PackedValues> packedValues(std::span<const char> bytes,
         for (const std::uint64_t word : mask) count += std::uint32_t(std::popcount(word));
     }
     const std::size_t size = std::size_t{format.stored} * count;
-    const bool isHalf = format.stored != format.bytes;
-    if ((format.compression & (COMPRESS_BLOSC | COMPRESS_ZIP)) == 0 || (isHalf && count == 0)) {
+    if ((format.compression & (COMPRESS_BLOSC | COMPRESS_ZIP)) == 0 ||
+        (format.areKeptAsHalves() && count == 0)) {
         if (front.rest().size() != size) return std::nullopt;
         return PackedValues{count, front.rest(), false};
     }
@@ -128,15 +128,18 @@ struct InactivePlaces {
     std::span<const char> second;  // a bit for each place that has the second; empty: none has
 
     // @param bytes  whose length has been looked at
-    InactivePlaces(std::span<const char> bytes, std::size_t maskBytes, T background) {
+    InactivePlaces(std::span<const char> bytes, std::size_t maskBytes, T background,
+                   const VdbValueFormat& format) {
         using namespace openvdb::io;
         const auto kind = std::uint8_t(bytes[0]);
         values = {kind == NO_MASK_OR_INACTIVE_VALS ? background : opposite(background), background};
         const bool hasTwo = kind == MASK_AND_TWO_INACTIVE_VALS;
         const bool hasOne =
             kind == NO_MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_ONE_INACTIVE_VAL || hasTwo;
-        const std::size_t size = (std::size_t{hasOne} + std::size_t{hasTwo}) * sizeof(T);
-        std::memcpy(static_cast<void*>(values.data()), &bytes[1], size);
+        const std::size_t count = std::size_t{hasOne} + std::size_t{hasTwo};
+        const std::size_t size = count * format.alone;
+        for (std::size_t i = 0; i < count; ++i)
+            values[i] = valueAlone<T>(&bytes[1 + i * format.alone], format);
         if (hasTwo || kind == MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_NO_INACTIVE_VALS)
             second = bytes.subspan(1 + size, maskBytes);
     }
@@ -179,12 +182,11 @@ bool unpackAll(std::span<const char> bytes, std::span<const std::uint64_t> mask,
     const std::size_t size = std::size_t{format.stored} * packed->count + kUnpackBytes;
     if (stored.size() < size) stored.resize(size);
     if (!unpack(*packed, format, {stored.data(), size})) return false;
-    const bool areHalves = format.stored != format.bytes;
-    widen(stored.data(), packed->count, areHalves, values);
+    widen(stored.data(), packed->count, format.areHalves(), values);
     const std::size_t places = 64 * mask.size();
     if (packed->count == places) return true;
     // From the last on, each moves to a place that is not before its own.
-    const InactivePlaces<T> inactive(bytes, mask.size_bytes(), background);
+    const InactivePlaces<T> inactive(bytes, mask.size_bytes(), background, format);
     std::size_t next = packed->count;
     for (std::size_t place = places; place-- > 0;) {
         const bool isActive = (mask[place / 64] >> (place % 64) & 1) != 0;

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <openvdb/Types.h>
+
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "ingest/vdb/vdb_walk.h"
@@ -13,6 +17,23 @@ namespace deltasplat {
 
 /// What unpacking takes behind what is unpacked: OpenVDB 10 asks for 16.
 inline constexpr std::size_t kUnpackBytes = 64;
+
+/// Returns a value that stands alone in a .vdb file: the background, a tile of the root, ...
+/// @tparam T       the grid's value type; for bools the std::uint8_t that one is stored as
+/// @param  stored  of the format's `alone` bytes
+template <typename T>
+T valueAlone(const char* stored, const VdbValueFormat& format) {
+    if constexpr (std::is_floating_point_v<T>) {
+        if (format.alone == sizeof(openvdb::math::half)) {
+            openvdb::math::half half;
+            std::memcpy(&half, stored, sizeof half);
+            return T(float(half));
+        }
+    }
+    T value;
+    std::memcpy(static_cast<void*>(&value), stored, sizeof value);
+    return value;
+}
 
 /// The values of a node of a .vdb file, as its bytes have them.
 struct PackedValues {

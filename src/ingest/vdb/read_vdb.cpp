@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <variant>
 
 #include "default_floats.h"
 #include "deltasplat/error.h"
@@ -24,12 +25,14 @@
 #include "ingest/vdb/vdb_transform.h"
 #include "ingest/vdb/vector_part.h"
 #include "listener_part.h"
+#include "name_list.h"
 #include "suggest.h"
 
 namespace deltasplat {
 namespace {
 
-constexpr const char* kScalarGrid = "a scalar grid (float, double, int32, int64, bool or mask)";
+constexpr const char* kScalarGrid =
+    "a scalar grid (float, double, half, int32, int64, bool or mask)";
 
 // A grid, or one part of a vector grid.
 struct ChosenGrid {
@@ -50,9 +53,16 @@ constexpr double kReadShare = 0.8;
 }
 
 std::string listOf(const std::vector<VdbGrid>& grids) {
-    std::string list;
-    for (const VdbGrid& grid : grids) list += (list.empty() ? "" : ", ") + grid.describe();
-    return list;
+    std::vector<std::string> names;
+    for (const VdbGrid& grid : grids) names.push_back(grid.describe());
+    return nameList(names);
+}
+
+void requireScalar(const std::string& file, const VdbGrid& grid, const std::string& name) {
+    if (grid.isScalar()) return;
+    fail(file, "grid \"" + name + "\" of type " + grid.type,
+         isVector(grid) ? kScalarGrid + std::string(", or a part of it such as ") + name + ".x"
+                        : kScalarGrid);
 }
 
 const VdbGrid* findByName(const std::vector<VdbGrid>& grids, const std::string& name) {
@@ -82,29 +92,24 @@ ChosenGrid findGrid(const std::string& file, const std::vector<VdbGrid>& grids,
              grids.empty() ? "a file with grids"
                            : "one of " + listOf(grids) + afterStop(suggestion(name, names)));
     }
-    if (!found->isScalar()) {
-        fail(file, "grid \"" + name + "\" of type " + found->type,
-             isVector(*found)
-                 ? kScalarGrid + std::string(", or a part of it such as ") + name + ".x"
-                 : kScalarGrid);
-    }
+    requireScalar(file, *found, name);
     return {found};
 }
 
 std::vector<ChosenGrid> chooseGrids(const std::string& where, const VdbFile& file,
-                                    const std::string& name, bool all) {
+                                    const std::optional<std::string>& name, bool all) {
     const std::vector<VdbGrid>& grids = file.grids();
-    if (!name.empty()) return {findGrid(where, grids, name)};
-    const VdbGrid* const preferred = defaultGrid(file);
-    if (preferred == nullptr) {
-        fail(where, grids.empty() ? "no grids" : "only " + listOf(grids), kScalarGrid);
-    }
-    if (!all) return {{preferred}};
+    if (name) return {findGrid(where, grids, *name)};
     std::vector<ChosenGrid> chosen;
     for (const VdbGrid& grid : grids) {
         if (grid.isScalar()) chosen.push_back({&grid});
     }
-    return chosen;
+    if (all && !chosen.empty()) return chosen;
+    const VdbGrid* const preferred = defaultGrid(file);
+    if (!preferred || (chosen.empty() && grids.size() > 1))
+        fail(where, grids.empty() ? "no grids" : "only " + listOf(grids), kScalarGrid);
+    requireScalar(where, *preferred, preferred->name);
+    return {{preferred}};
 }
 
 // Reads a grid as OpenVDB does.
@@ -207,7 +212,8 @@ class GridReader {
 
     // A file of nothing but what is passed over is no valid one.
     void finish() {
-        if (!anyTold_ && passedOver_) refuse(*passedOver_);
+        if (!anyTold_ && passedOver_)
+            std::visit([this](const auto& error) { refuse(error); }, *passedOver_);
     }
 
   private:
@@ -220,14 +226,25 @@ class GridReader {
             if (!amongOthers || !visitor_.other || !isLevelSet(file_.metadata(*grid.grid))) {
                 refuse(error);
             } else {
-                passedOver_ = error;
-                visitor_.other(grid.name(), "level set with NaN or infinite values");
+                passOver(error, grid, "level set with NaN or infinite values");
+            }
+        } catch (const UnreadableGrid& error) {
+            if (!amongOthers || !visitor_.other || visitor_.invalid) {
+                refuse(error);
+            } else {
+                passOver(error, grid, grid.grid->valueType() + ", " + error.obstacle);
             }
         } catch (const Error& error) {
             if (error.code() != ErrorCode::kInput) throw;
             refuse(error);
         }
         return {};
+    }
+
+    template <typename Refused>
+    void passOver(const Refused& error, const ChosenGrid& grid, const std::string& why) {
+        passedOver_ = error;
+        visitor_.other(grid.name(), why);
     }
 
     template <typename Refused>
@@ -241,17 +258,30 @@ class GridReader {
     const ReadOptions& options_;
     const VolumeVisitor& visitor_;
     bool anyTold_ = false;
-    std::optional<NotFinite> passedOver_;
+    std::optional<std::variant<NotFinite, UnreadableGrid>> passedOver_;
 };
 
 std::string whereOf(const std::filesystem::path& path, const ChosenGrid& grid) {
     return path.string() + ": grid \"" + grid.name() + "\"";
 }
 
+// Says which grids might have been meant, if somebody knew what they are.
+void warnOfUnknown(const std::filesystem::path& path, const VdbFile& file, const ChosenGrid& chosen,
+                   const Listener& listener) {
+    if (chosen.grid->plainName() == "density") return;
+    std::vector<std::string> unknown;
+    for (const VdbGrid& grid : file.grids())
+        if (!grid.numeric && !grid.vector) unknown.push_back(grid.describe());
+    if (unknown.empty()) return;
+    listener.warn(path.string() + ": passed over " + nameList(unknown) +
+                  ", of types that are not known");
+}
+
 // Says which of several grids is read, unless somebody has asked for it.
 void warnOfOthers(const std::filesystem::path& path, const VdbFile& file, const ChosenGrid& chosen,
                   const ReadOptions& options, const Listener& listener) {
-    if (!options.gridName.empty()) return;
+    if (options.gridName) return;
+    warnOfUnknown(path, file, chosen, listener);
     const auto scalars = std::count_if(file.grids().begin(), file.grids().end(),
                                        [](const VdbGrid& grid) { return grid.isScalar(); });
     if (scalars <= 1) return;
@@ -333,7 +363,7 @@ void readVdb(const std::filesystem::path& path, const ReadOptions& options, bool
         reader.read(chosen[i], whereOf(path, chosen[i]), chosen.size() > 1, part);
     }
     reader.finish();
-    if (!all || !options.gridName.empty() || !visitor.other) return;
+    if (!all || options.gridName || !visitor.other) return;
     for (const VdbGrid& grid : file.grids()) {
         if (!grid.isScalar()) visitor.other(grid.name, grid.type);
     }

@@ -7,15 +7,18 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <new>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "deltasplat/error.h"
 #include "ingest/files/file_bytes.h"
 #include "ingest/grids/grid_errors.h"
 #include "ingest/vdb/leaf_sizes.h"
+#include "ingest/vdb/packed_values.h"
 #include "ingest/vdb/vdb_bytes.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "ingest/vdb/vdb_tree.h"
@@ -28,10 +31,21 @@ namespace {
 
 // The first version that says for each grid how it is compressed, from 2013.
 constexpr std::uint32_t kOldestVersion = openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION;
+// The newest one, of OpenVDB 13: it differs from 224 in that there may be grids of halves. What
+// comes after it has another layout.
+constexpr std::uint32_t kNewestVersion = 225;
 constexpr std::uint64_t kUuidBytes = 36;
 
-constexpr std::array<const char*, 6> kScalarTypes{"float", "double", "int32",
+constexpr std::array<const char*, 7> kScalarTypes{"float", "double", kHalfType, "int32",
                                                   "int64", "bool",   "mask"};
+// Numbers of types that are not read: OpenVDB's names of some, and the compiler's of others.
+constexpr std::array<std::string_view, 15> kOtherNumbers{
+    "int8", "uint8", "int16", "uint16", "uint32", "uint64", "a", "h",
+    "s",    "t",     "j",     "l",      "m",      "x",      "y"};
+constexpr std::array<std::string_view, 5> kVectorBegins{"vec", "mat", "quat", "pt", "string"};
+
+constexpr std::uint32_t kCompressions =
+    openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK | openvdb::io::COMPRESS_BLOSC;
 
 const std::string kTreeFront = "Tree_";
 const std::string kTreeBack = "_5_4_3";
@@ -49,6 +63,16 @@ void parseType(const std::string& stored, VdbGrid& grid) {
         type = type.substr(kTreeFront.size(), type.size() - kTreeFront.size() - kTreeBack.size());
     }
     grid.type = type;
+    if (grid.type == kHalfType) grid.half = true;
+    if (!grid.supported && type.starts_with(kTreeFront)) {
+        type = type.substr(kTreeFront.size());
+        type = type.substr(0, type.find('_'));
+    }
+    const auto isOne = [&](std::string_view name) { return type == name; };
+    grid.numeric = std::any_of(kScalarTypes.begin(), kScalarTypes.end(), isOne) ||
+                   std::any_of(kOtherNumbers.begin(), kOtherNumbers.end(), isOne);
+    grid.vector = std::any_of(kVectorBegins.begin(), kVectorBegins.end(),
+                              [&](std::string_view begin) { return type.starts_with(begin); });
 }
 
 // What tells grids of one name apart stands behind this in the unique one.
@@ -100,6 +124,30 @@ openvdb::math::MapBase::ConstPtr takeMap(std::istream& stream, const std::string
     throw Error(ErrorCode::kInput, gotExpected(where, got, "a sound OpenVDB grid"));
 }
 
+// Returns the type of the transform that comes next, and leaves `bytes` before it.
+std::string mapTypeAt(VdbBytes& bytes) {
+    const std::uint64_t map = bytes.position();
+    std::string type = bytes.text(256);  // a length that OpenVDB would trust
+    bytes.seek(map);
+    return type;
+}
+
+std::string compressionText(std::uint32_t flags) {
+    std::ostringstream text;
+    text << "compression flags 0x" << std::hex << flags;
+    return text.str();
+}
+
+void requireCompression(std::uint32_t flags, const std::string& where) {
+    if ((flags & ~kCompressions) == 0) return;
+    throw UnreadableGrid(where, compressionText(flags), "none but zip, active mask and Blosc");
+}
+
+void requireMapType(const std::string& type, const std::string& where) {
+    if (isMapType(type)) return;
+    throw UnreadableGrid(where, "a " + printable(type) + " transform", "one that OpenVDB 10 knows");
+}
+
 // What stands before a grid's tree.
 struct GridHead {
     VdbMetadata metadata;
@@ -116,14 +164,15 @@ GridHead readHead(VdbBytes& bytes, const VdbGrid& grid, const std::filesystem::p
         bytes.failCorrupt("a grid of type " + grid.type + " in a file without offsets",
                           "scalar and vector grids");
     }
+    const std::string where = whereOf(file, grid);
     bytes.seek(grid.data);
     head.format.compression = bytes.u32();
+    requireCompression(head.format.compression, where);
     head.metadata = readMetadata(bytes, grid.half, &head.leafSizes);
+    requireMapType(mapTypeAt(bytes), where);
     const std::uint64_t map = bytes.position();
-    bytes.text(256);  // the transform's type: a length that OpenVDB would trust
-    bytes.seek(map);
     std::istringstream stream(bytes.bytes(std::min(kMostMapBytes, bytes.size() - map)));
-    head.transform = takeMap(stream, whereOf(file, grid));
+    head.transform = takeMap(stream, where);
     bytes.seek(map + std::uint64_t(stream.tellg()));
     return head;
 }
@@ -190,7 +239,7 @@ bool VdbGrid::isScalar() const {
 }
 
 std::string VdbGrid::valueType() const {
-    return half && (type == "float" || type == "double") ? "half" : type;
+    return half && (type == "float" || type == "double") ? kHalfType : type;
 }
 
 VdbFile::VdbFile(std::filesystem::path file)
@@ -204,10 +253,9 @@ void VdbFile::readDirectory() {
         bytes.failCorrupt("no OpenVDB data", "a .vdb file");
     }
     const std::uint32_t version = bytes.u32();
-    if (version < kOldestVersion || version > openvdb::OPENVDB_FILE_VERSION) {
-        bytes.failCorrupt(
-            "OpenVDB file version " + std::to_string(version),
-            std::to_string(kOldestVersion) + ".." + std::to_string(openvdb::OPENVDB_FILE_VERSION));
+    if (version < kOldestVersion || version > kNewestVersion) {
+        bytes.failCorrupt("OpenVDB file version " + std::to_string(version),
+                          std::to_string(kOldestVersion) + ".." + std::to_string(kNewestVersion));
     }
     bytes.skip(8);  // the version of the library that wrote it
     const bool hasOffsets = bytes.u8() != 0;
@@ -221,15 +269,28 @@ void VdbFile::readDirectory() {
         bytes.seek(grid.end);
         grids_.push_back(std::move(grid));
     }
-    // Voxels that are shared are stored as the grid that has them says.
-    for (VdbGrid& grid : grids_) {
-        if (const VdbGrid* const owner = findOwner(grid)) grid.half = owner->half;
-    }
+    findOwners();
 }
 
 VdbMetadata VdbFile::metadata(const VdbGrid& grid) const {
     VdbBytes bytes(bytes_);
-    return readHead(bytes, grid, file_).metadata;
+    return summary(grid, bytes).metadata;
+}
+
+VdbFile::Summary VdbFile::summary(const VdbGrid& grid, VdbBytes& bytes) const {
+    bytes.seek(grid.data);
+    const std::uint32_t compression = bytes.u32();
+    Summary summary{readMetadata(bytes, grid.half), ""};
+    if (!grid.numeric) return summary;
+    const std::string map = mapTypeAt(bytes);
+    if (!grid.isScalar()) {
+        summary.obstacle = "type " + grid.type;
+    } else if ((compression & ~kCompressions) != 0) {
+        summary.obstacle = compressionText(compression);
+    } else if (!isMapType(map) || map == openvdb::math::NonlinearFrustumMap::mapType()) {
+        summary.obstacle = "a " + printable(map) + " transform";
+    }
+    return summary;
 }
 
 // A file written as a stream says nowhere how long its grids are.
@@ -239,17 +300,26 @@ void VdbFile::findEnd(VdbBytes& bytes, VdbGrid& grid) const {
     grid.end = bytes.position();
 }
 
-// Returns the grid whose voxels a grid has, which may be itself; null if there is none.
-const VdbGrid* VdbFile::findOwner(const VdbGrid& grid) const {
-    if (grid.parentName.empty()) return &grid;
-    const auto found = std::find_if(grids_.begin(), grids_.end(), [&](const VdbGrid& other) {
-        return other.uniqueName == grid.parentName && other.parentName.empty();
-    });
-    return found == grids_.end() ? nullptr : &*found;
+// Finds the grid whose voxels each grid has, which may be itself.
+void VdbFile::findOwners() {
+    std::map<std::string_view, std::size_t> owners;  // the first of each name
+    for (std::size_t i = 0; i < grids_.size(); ++i)
+        if (grids_[i].parentName.empty()) owners.emplace(grids_[i].uniqueName, i);
+    for (std::size_t i = 0; i < grids_.size(); ++i) {
+        VdbGrid& grid = grids_[i];
+        const auto found = owners.find(grid.parentName);
+        if (grid.parentName.empty()) {
+            grid.owner = i;
+        } else if (found != owners.end()) {
+            grid.owner = found->second;
+            // Voxels that are shared are stored as the grid that has them says.
+            grid.half = grids_[found->second].half;
+        }
+    }
 }
 
 const VdbGrid& VdbFile::ownerOf(const VdbGrid& grid) const {
-    if (const VdbGrid* const owner = findOwner(grid)) return *owner;
+    if (grid.owner) return grids_[*grid.owner];
     throw Error(ErrorCode::kInput, gotExpected(file_.string(),
                                                "grid \"" + grid.name +
                                                    "\" without "
@@ -270,9 +340,8 @@ struct VdbFile::Found {
 
     // Returns the background of a grid of numbers.
     VdbValues::Number number() const {
-        const auto as = [&]<typename T>(T value) -> VdbValues::Number {
-            std::memcpy(&value, background.data(), sizeof value);
-            return value;
+        const auto as = [&]<typename T>(T) -> VdbValues::Number {
+            return valueAlone<T>(background.data(), head.format);
         };
         const bool isWide = head.format.bytes == 8;
         if (head.format.real) return isWide ? as(double{}) : as(float{});
@@ -303,7 +372,7 @@ std::optional<VdbFile::Found> VdbFile::find(const VdbGrid& grid, Find how,
         walkLeaves(bytes, head.format, places.leaves);
         requireEnd(bytes, owner);
     }
-    std::vector<char> background(head.format.bytes);
+    std::vector<char> background(head.format.alone);
     bytes.seek(places.background);
     bytes.read(background.data(), background.size());
     std::shared_ptr<const FileBytes> file = bytes_;
@@ -364,9 +433,8 @@ std::optional<VdbValues> VdbFile::readValues(const VdbGrid& grid, Find how,
     requireMemory(found->where, found->size.codeBytes(format));
     std::optional<VdbTiles> tiles = VdbTiles::read(*found->file, format, found->places.nodes);
     if (!tiles) return std::nullopt;
-    return VdbValues{
-        found->head.metadata,          found->number(), std::move(*tiles), std::move(found->leaves),
-        format.stored != format.bytes, found->byNotes};
+    return VdbValues{found->head.metadata,     found->number(),    std::move(*tiles),
+                     std::move(found->leaves), format.areHalves(), found->byNotes};
 }
 
 }  // namespace deltasplat

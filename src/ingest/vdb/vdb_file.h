@@ -20,20 +20,28 @@ namespace deltasplat {
 /// One grid of a .vdb file as the file's directory lists it.
 struct VdbGrid {
     std::string name;   ///< unique in the file: "density", or "density[1]" where names repeat
-    std::string type;   ///< value type: "float", "double", "int32", "vec3s", ...
+    std::string type;   ///< value type: "float", "double", "half", "int32", "vec3s", ...; or the
+                        ///< whole tree's, as stored, of another layout
     bool half = false;  ///< real values are stored as binary16 (writers set it for integers too)
     bool supported = true;  ///< in OpenVDB's standard tree layout
+    bool numeric = false;   ///< has numbers in any layout, also of types that are not read
+    bool vector = false;    ///< has vectors, points or texts
 
     std::string uniqueName;  ///< name as stored
     std::string parentName;  ///< as stored, of the grid whose tree it shares; or empty
     std::uint64_t data = 0;  ///< where the grid itself starts
     std::uint64_t end = 0;   ///< one past its last byte
+    std::optional<std::size_t>
+        owner;  ///< of the file's grids the one whose tree it has, or its own
 
+    /// Whether it is of a type that is read.
     bool isScalar() const;
     /// Returns `type`, or "half" for real values stored so.
     std::string valueType() const;
     /// Returns for example `density (float)`.
-    std::string describe() const { return name + " (" + valueType() + ")"; }
+    std::string describe() const {
+        return (name.empty() ? "\"\"" : name) + " (" + valueType() + ")";
+    }
     /// Returns the name without what tells grids of one name apart.
     std::string plainName() const { return uniqueName.substr(0, uniqueName.find('\x1e')); }
 };
@@ -62,9 +70,18 @@ class VdbFile {
     const std::vector<VdbGrid>& grids() const { return grids_; }
     /// Returns the metadata of the file itself.
     const VdbMetadata& metadata() const { return metadata_; }
-    /// Returns the metadata of a scalar grid of grids().
+    /// Returns the metadata of a grid of grids(), of whatever type.
     /// @throw Error(kInput) if its bytes are not a sound grid
     VdbMetadata metadata(const VdbGrid& grid) const;
+    /// What is to be known of a grid before its voxels are read.
+    struct Summary {
+        VdbMetadata metadata;
+        std::string obstacle;  ///< "type uint32": why a grid of numbers cannot be read; or empty
+    };
+    /// @param bytes  of this file, for who asks about many grids
+    /// @throw as metadata()
+    Summary summary(const VdbGrid& grid, VdbBytes& bytes) const;
+    VdbBytes bytes() const { return VdbBytes(bytes_); }
     /// Reads a scalar grid of grids(), or one of vectors.
     /// @throw Error(kInput) if its bytes are not a sound grid, Error(kFailed) if it does not fit
     ///        into memory, whatever the listener throws
@@ -101,7 +118,7 @@ class VdbFile {
     std::optional<Found> find(const VdbGrid& grid, Find how, const Listener& listener) const;
     void readDirectory();
     void findEnd(VdbBytes& bytes, VdbGrid& grid) const;
-    const VdbGrid* findOwner(const VdbGrid& grid) const;
+    void findOwners();
     const VdbGrid& ownerOf(const VdbGrid& grid) const;
 
     std::filesystem::path file_;

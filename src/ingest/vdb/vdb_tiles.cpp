@@ -34,7 +34,7 @@ openvdb::Coord placeOf(const VdbNode& node, int child) {
 
 // Writes a stored value as the grid has it.
 void writeValue(const char* stored, const VdbValueFormat& format, char* to) {
-    if (format.stored == format.bytes) {
+    if (!format.areHalves()) {
         std::memcpy(to, stored, format.bytes);
         return;
     }
@@ -53,7 +53,11 @@ bool readNode(const FileBytes& file, const VdbValueFormat& format, const VdbNode
     if (file.read(node.begin, bytes.data(), node.size) != node.size) return false;
     if (node.level == 3) {
         *places = {openvdb::Coord(node.origin.data()), 3};
-        std::copy(bytes.begin(), bytes.end(), values);
+        if (format.alone == format.bytes) {
+            std::copy(bytes.begin(), bytes.end(), values);
+        } else {
+            writeValue(bytes.data(), format, values);
+        }
         return true;
     }
     const std::size_t children = std::size_t{1} << (3 * shapeOf(node.level).log2);

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "deltasplat/error.h"
+#include "ingest/grids/grid_errors.h"
 #include "ingest/grids/tree_types.h"
 #include "number_text.h"
 
@@ -101,7 +102,9 @@ Transform::Ptr transformOf(const MapBase& map) {
     return transform;
 }
 
-MapBase::Ptr readMap(std::istream& stream) {
+namespace {
+
+const std::map<openvdb::Name, MapBase::Ptr (*)()>& maps() {
     static const std::map<openvdb::Name, MapBase::Ptr (*)()> kMaps{
         {AffineMap::mapType(), AffineMap::create},
         {ScaleMap::mapType(), ScaleMap::create},
@@ -112,9 +115,19 @@ MapBase::Ptr readMap(std::istream& stream) {
         {UnitaryMap::mapType(), UnitaryMap::create},
         {NonlinearFrustumMap::mapType(), NonlinearFrustumMap::create},
     };
+    return kMaps;
+}
+
+}  // namespace
+
+bool isMapType(const std::string& mapType) {
+    return maps().contains(mapType);
+}
+
+MapBase::Ptr readMap(std::istream& stream) {
     const openvdb::Name type = openvdb::readString(stream);
-    const auto found = kMaps.find(type);
-    if (found == kMaps.end())
+    const auto found = maps().find(type);
+    if (found == maps().end())
         OPENVDB_THROW(openvdb::KeyError, "Map " << type << " is not registered");
     if (type == NonlinearFrustumMap::mapType()) {
         // It has another map, which it asks the library for, and reads what older files have.
@@ -140,7 +153,7 @@ glm::dmat4 worldFromIndexOf(const MapBase& map, const std::string& where) {
         throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
     };
     if (!map.isLinear()) {
-        fail("a " + map.type() + " transform", "a linear one (no frustum)");
+        throw UnreadableGrid(where, "a " + map.type() + " transform", "a linear one (no frustum)");
     }
     glm::dmat4 matrix(0);
     try {

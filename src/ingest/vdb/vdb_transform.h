@@ -25,6 +25,9 @@ openvdb::math::MapBase::Ptr makeMapOfType(const std::string& mapType,
 /// Returns a transform of a map, as it is. It needs OpenVDB's library.
 openvdb::math::Transform::Ptr transformOf(const openvdb::math::MapBase& map);
 
+/// Whether OpenVDB has a map of the type named.
+bool isMapType(const std::string& mapType);
+
 /// Reads a map as a .vdb file has it, as Transform::read() does. It needs OpenVDB's library for a
 /// frustum alone.
 /// @throw an exception of OpenVDB's, or what the stream throws
@@ -35,7 +38,7 @@ glm::dmat4 matrixOf(const openvdb::math::MapBase& map);
 
 /// Returns the matrix of a map that places a volume.
 /// @param where  for messages
-/// @throw Error(kInput) if it is not linear, or cannot be inverted
+/// @throw UnreadableGrid if it is not linear, Error(kInput) if it cannot be inverted
 glm::dmat4 worldFromIndexOf(const openvdb::math::MapBase& map, const std::string& where);
 
 }  // namespace deltasplat

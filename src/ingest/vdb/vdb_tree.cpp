@@ -78,12 +78,13 @@ class TreeReader {
     }
 
     void readRootTile(const VdbNode& node, Tree& tree) {
-        Stored value;
-        if (file_.read(node.begin, reinterpret_cast<char*>(&value), sizeof value) != sizeof value) {
+        std::vector<char> stored(format_.alone);
+        if (file_.read(node.begin, stored.data(), stored.size()) != stored.size()) {
             isSound_ = false;
             return;
         }
-        tree.root().addTile(placeOf(node.origin), T(value), node.tiles > 0);
+        tree.root().addTile(placeOf(node.origin), T(valueAlone<Stored>(stored.data(), format_)),
+                            node.tiles > 0);
     }
 
     template <typename Node>
@@ -194,11 +195,12 @@ openvdb::tree::TreeBase::Ptr readTree(const FileBytes& file, const std::string& 
                             openvdb::Int64Tree, openvdb::BoolTree, openvdb::MaskTree,
                             openvdb::Vec3STree, openvdb::Vec3DTree, openvdb::Vec3ITree>;
     openvdb::tree::TreeBase::Ptr tree;
-    applyType(Trees(), type, [&]<typename Tree>(std::type_identity<Tree>) {
-        StoredValue<typename Tree::ValueType> value;
-        std::copy_n(background.begin(), sizeof value, reinterpret_cast<char*>(&value));
-        tree = TreeReader<Tree>(file, format, value, nodes, leaves).read(listener);
-    });
+    applyType(Trees(), type == kHalfType ? "float" : type,
+              [&]<typename Tree>(std::type_identity<Tree>) {
+                  const auto value =
+                      valueAlone<StoredValue<typename Tree::ValueType>>(background.data(), format);
+                  tree = TreeReader<Tree>(file, format, value, nodes, leaves).read(listener);
+              });
     return tree;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: the OpenVDB file format, versions 222 to 224, as OpenVDB 10's headers read it
+// Based on: the OpenVDB file format, versions 222 to 225, as OpenVDB 10's headers read it
 // (Tree.h, RootNode.h, InternalNode.h, LeafNode*.h, io/Compression.h).
 #include "ingest/vdb/vdb_walk.h"
 
@@ -73,17 +73,17 @@ class Walk {
     void topology() {
         if (bytes_.u32() != 1) fail("a tree of several buffers");
         if (places_) places_->background = bytes_.position();
-        bytes_.skip(format_.bytes);
+        bytes_.skip(format_.alone);
         const std::uint32_t tiles = bytes_.u32();
         const std::uint32_t children = bytes_.u32();
         for (std::uint32_t i = 0; i < tiles; ++i) {
             const Place origin = place();
             addRoot(origin);
             const std::uint64_t begin = bytes_.position();
-            bytes_.skip(format_.bytes);
+            bytes_.skip(format_.alone);
             const int state = bytes_.u8();
             if (state > 1) fail("a tile that is neither active nor inactive");
-            noteNode({origin, 3, begin, format_.bytes, std::uint64_t(state)});
+            noteNode({origin, 3, begin, format_.alone, std::uint64_t(state)});
             if (places_ && state == 1) noteRootTile(origin);
         }
         for (std::uint32_t i = 0; i < children; ++i) {
@@ -225,8 +225,7 @@ class Walk {
 
     // @param ofLeaf  where values are unpacked later, by who says whether they can be
     void data(std::uint64_t count, bool ofLeaf) {
-        const bool half = format_.stored != format_.bytes;
-        if (half && count == 0) return;
+        if (format_.areKeptAsHalves() && count == 0) return;
         const std::uint64_t expected = count * format_.stored;
         const bool blosc = (format_.compression & openvdb::io::COMPRESS_BLOSC) != 0;
         const bool zip = (format_.compression & openvdb::io::COMPRESS_ZIP) != 0;
@@ -308,20 +307,22 @@ std::uint64_t VdbValueFormat::inactiveBytes(int kind, std::uint64_t mask) const 
     const bool one = kind == NO_MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_ONE_INACTIVE_VAL;
     const bool two = kind == MASK_AND_TWO_INACTIVE_VALS;
     const bool hasMask = kind >= MASK_AND_NO_INACTIVE_VALS && kind <= MASK_AND_TWO_INACTIVE_VALS;
-    return std::uint64_t{bytes} * (two ? 2 : one ? 1 : 0) + (hasMask ? mask : 0);
+    return std::uint64_t{alone} * (two ? 2 : one ? 1 : 0) + (hasMask ? mask : 0);
 }
 
 bool VdbValueFormat::setType(const std::string& type, bool half) {
     static const std::map<std::string, std::pair<std::uint32_t, bool>> kTypes{
-        {"float", {4, true}},  {"double", {8, true}}, {"int32", {4, false}},
-        {"int64", {8, false}}, {"bool", {1, false}},  {"mask", {1, false}},
-        {"vec3s", {12, true}}, {"vec3d", {24, true}}, {"vec3i", {12, false}}};
+        {"float", {4, true}},  {"double", {8, true}}, {"int32", {4, false}}, {"half", {4, true}},
+        {"int64", {8, false}}, {"bool", {1, false}},  {"mask", {1, false}},  {"vec3s", {12, true}},
+        {"vec3d", {24, true}}, {"vec3i", {12, false}}};
     const auto found = kTypes.find(type);
     if (found == kTypes.end()) return false;
     bytes = found->second.first;
     real = found->second.second;
     const bool vector = type.starts_with("vec3");
-    stored = half && real ? (vector ? 6 : 2) : bytes;
+    const bool isHalf = type == kHalfType;
+    stored = (half && real) || isHalf ? (vector ? 6 : 2) : bytes;
+    alone = isHalf ? stored : bytes;
     leaf = type == "bool" ? Leaf::kBools : type == "mask" ? Leaf::kMask : Leaf::kValues;
     return true;
 }

@@ -12,11 +12,18 @@
 
 namespace deltasplat {
 
+/// What OpenVDB 13 calls a grid whose values are halves in memory as well; it becomes one of
+/// floats.
+inline constexpr const char* kHalfType = "half";
+
 /// How a grid's values lie in a .vdb file.
 struct VdbValueFormat {
-    std::uint32_t bytes = 4;   ///< of one value
-    std::uint32_t stored = 4;  ///< of one value within a node's data: 2 for a real kept as half
-    bool real = true;          ///< float, double and vectors of them
+    std::uint32_t bytes = 4;   ///< of one value of the tree that is made of them
+    std::uint32_t stored = 4;  ///< of one value within a node's data: 2 for a half
+    /// Of one that stands alone: the background, a tile of the root, a node's inactive value. That
+    /// of a grid of halves is one, that of a float kept as half is a float.
+    std::uint32_t alone = 4;
+    bool real = true;  ///< float, double and vectors of them
     enum class Leaf { kValues, kBools, kMask } leaf = Leaf::kValues;
     std::uint32_t compression = 0;  ///< the grid's own flags, openvdb::io::COMPRESS_...
 
@@ -25,6 +32,10 @@ struct VdbValueFormat {
     /// @param kind  of the node: openvdb::io's NO_MASK_... or MASK_...
     /// @param mask  bytes of a mask of the node's places
     std::uint64_t inactiveBytes(int kind, std::uint64_t mask) const;
+    /// Whether values are stored shorter than the tree has them.
+    bool areHalves() const { return stored != bytes; }
+    /// Whether a node's data are none of the grid's own values: OpenVDB stores no size of none.
+    bool areKeptAsHalves() const { return stored != alone; }
     /// Sets all but the compression; returns false if `type` ("float", "vec3s", ...) is not known.
     bool setType(const std::string& type, bool half);
 };
