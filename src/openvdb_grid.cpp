@@ -13,11 +13,13 @@
 namespace deltasplat {
 namespace {
 
-// Whether reading writes to a grid: level sets become fog, and NaN what replaces it.
+// Whether reading writes to a grid: level sets become fog, or get what a surface needs, and NaN
+// what replaces it.
 bool isChanged(const openvdb::GridBase& grid, const ReadOptions& options) {
     const bool isReal = grid.isType<openvdb::FloatGrid>() || grid.isType<openvdb::DoubleGrid>();
     const bool isLevelSet = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
-    return isReal && (options.nanValue || (isLevelSet && options.levelSetToFog));
+    const bool becomesOther = isLevelSet && (options.levelSetToFog || options.levelSetSurface);
+    return isReal && (options.nanValue || becomesOther);
 }
 
 }  // namespace

@@ -14,7 +14,8 @@ namespace deltasplat {
 /// transform: what readVolume would make of a .vdb file of it. The grid is not changed; where
 /// `options` ask for the source to be kept it is shared, unless a level set has to become fog or
 /// NaN may have to be replaced, of which there is a copy.
-/// @param options  levelSetToFog, nanValue, bits, relativeError, keepSource, keepInexact
+/// @param options  levelSetToFog, levelSetSurface, nanValue, bits, relativeError, keepSource,
+///                 keepInexact
 /// @throw Error(kUsage) without a grid, or for one that holds the differences of a delta grid;
 ///        Error(kInput) for another type or transform, or for NaN and infinities that nothing
 ///        replaces

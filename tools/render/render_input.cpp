@@ -18,21 +18,11 @@
 #include "options/transfer_function_option.h"
 #include "render/read_medium.h"
 #include "render/scene_input.h"
-#include "text/short_number.h"
 
 namespace deltasplat {
 namespace {
 
 constexpr const char* kLabelPreset = "labels";
-
-// How many voxels a surface has to be from the ends of a level set's band, on the inside and on the
-// outside: found by trying (obliquely, a ray goes 1.7 voxels deep between two that it meets).
-constexpr double kInnerEnd = 1.8;
-constexpr double kOuterEnd = 0.5;
-
-std::string shortText(double number) {
-    return shortNumberText(number, 1e-3);
-}
 
 // Returns a value that is no whole number, if there is one.
 std::optional<double> anyBroken(const Volume& volume) {
@@ -187,27 +177,6 @@ void warnOfNoSurface(const Volume& volume, double isovalue, const Listener& list
                                : "nothing is inside"));
 }
 
-// A level set stores distances to a few voxels from its surface. What lies beyond is not there to
-// fill the gaps between voxels that are cut.
-void warnOfBandEnds(const PictureOptions& picture, const Volume& volume, double isovalue,
-                    const Listener& listener) {
-    const glm::dvec3 size = volume.voxelSize();
-    const double voxel = std::max({size.x, size.y, size.z});
-    const double width = std::abs(volume.background);
-    // Where values end before the band does, nothing lies deeper.
-    const bool isHollow = volume.valueMin < voxel - width;
-    const double low = isHollow ? kInnerEnd * voxel - width : volume.valueMin;
-    const double high = width - kOuterEnd * voxel;
-    const bool isWithin = isovalue >= volume.valueMin && isovalue <= volume.valueMax;
-    if (!isWithin || (isovalue >= low && isovalue <= high)) return;
-    listener.warn(
-        (picture.surface.isovalue ? "--isovalue: got " : "--surface: at ") + numberText(isovalue) +
-        " near the end of the level set's band, " + shortText(-width) + " to " + shortText(width) +
-        ", where surfaces have pits; expected " +
-        (low <= high ? shortText(low) + " to " + shortText(high)
-                     : "a band of at least " + shortText(kInnerEnd + kOuterEnd) + " voxels"));
-}
-
 // A surface has the colour that values have there, if that is asked for and it has no other.
 void finishSurface(const PictureOptions& picture, const Volume& volume, Optics& optics,
                    const Listener& listener) {
@@ -216,7 +185,6 @@ void finishSurface(const PictureOptions& picture, const Volume& volume, Optics& 
         optics.surface->color = glm::dvec3(ValueColors(volume, optics).colorOf(float(isovalue)));
     if (volume.empty()) return;
     warnOfNoSurface(volume, isovalue, listener);
-    if (isLevelSet(volume)) warnOfBandEnds(picture, volume, isovalue, listener);
 }
 
 }  // namespace
@@ -389,6 +357,8 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
                     const VolumeReader& reader) {
     ReadOptions read = picture.read;
     if (!read.paletteNumbers && isForLabels(picture.transferFunction)) read.paletteNumbers = true;
+    if (picture.surface.asked || picture.surface.ofLevelSets)
+        read.levelSetSurface = {picture.surface.isovalue.value_or(0), picture.parts.cuts()};
     read.keepInexact = picture.render.mode != Mode::kComposite;
     // Frames are kept, many at a time, and told by what they take.
     read.readLater = !look && mayShowSome(picture, options.optics);
@@ -408,11 +378,6 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
     if (picture.render.mode == Mode::kComposite)
         readMedium(input, picture, volume, options.optics, listener, look);
     if (!picture.parts.cuts()) return seenIn(std::move(volume), options.optics, look);
-    if (options.optics.surface && isLevelSet(volume)) {
-        listener.warn(
-            "a level set has values near its surface only: cut open, it is hollow, and what is not "
-            "near is not there");
-    }
     return seenIn(cutAsChosen(volume, input, picture.parts, picture.read, listener), options.optics,
                   look);
 }

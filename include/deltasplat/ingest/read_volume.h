@@ -28,6 +28,12 @@ struct RawFormat {
     std::uint64_t skipBytes = 0;  ///< header bytes to pass over (after decompression)
 };
 
+/// What is going to be shown of a level set as a surface (Surface).
+struct LevelSetSurface {
+    double isovalue = 0;   ///< in data units
+    bool isSolid = false;  ///< what is inside is wanted as well, for it may be cut
+};
+
 /// How to read a volume.
 struct ReadOptions {
     /// .vdb: which grid, "" being one without a name. Empty: `density`, else the first fog volume,
@@ -36,6 +42,10 @@ struct ReadOptions {
     std::optional<std::string> gridName = {};
     bool levelSetToFog = true;  ///< .vdb: turn level sets into fog volumes; one whose
                                 ///< background is not above 0 is kept, with a warning
+    /// .vdb: level sets that stay what they are get active voxels beside this surface where their
+    /// band ends too near to it on either side, as its values go on, with a warning. What is not
+    /// active and negative is inside. Empty: nothing becomes active.
+    std::optional<LevelSetSurface> levelSetSurface = {};
     std::optional<double> nanValue;  ///< replaces NaN and infinities; empty: they are an error
     RawFormat raw;                   ///< .raw: what the bytes are
     /// NIfTI and .npy of more than three axes: which of their volumes, from 0 on; the fourth axis

@@ -162,9 +162,10 @@ Volume readDeltaGrid(TreeGrid& stored, const VdbMetadata& fileMetadata, const st
         const CodeTree::Tree& codes = decoded.codes->tree();
         requireKnownCodes(unpacked.said, {histogramOf(codes), activeBox(codes)}, where);
     }
-    const bool fog = options.levelSetToFog && volume.gridClass == kLevelSetClass;
+    const bool changes =
+        (options.levelSetToFog || options.levelSetSurface) && volume.gridClass == kLevelSetClass;
     TreeGrid source;
-    if (!header.sourceTree.empty() && (options.keepSource || fog)) {
+    if (!header.sourceTree.empty() && (options.keepSource || changes)) {
         source = restoreGrid(header, decoded, grid, volume.worldFromIndex);
     }
     // Values between two floats come back as the nearer one.
@@ -174,7 +175,7 @@ Volume readDeltaGrid(TreeGrid& stored, const VdbMetadata& fileMetadata, const st
                   makeMapIfAny(volume.worldFromIndex)};
         source.metadata.insert(openvdb::GridBase::META_GRID_NAME, grid.name());
     }
-    if (fog && source.tree) {
+    if (changes && source.tree) {
         decoded = {};
         fillFromGrid(source, {listener, where, header.sourceType, options}, volume);
     } else {
@@ -201,8 +202,9 @@ std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
         const VdbMetadata metadata = file.metadata(grid);
         if (!isDeltaGrid(grid.type, metadata)) return std::nullopt;
         header = takeDeltaHeader(metadata, where);
-        const bool becomesFog = options.levelSetToFog && sourceClass(metadata) == kLevelSetClass;
-        if (!mayDecodeBlocks(header) || becomesFog) return std::nullopt;
+        const bool changes = (options.levelSetToFog || options.levelSetSurface) &&
+                             sourceClass(metadata) == kLevelSetClass;
+        if (!mayDecodeBlocks(header) || changes) return std::nullopt;
         // Exact codes say all of a volume without empty places.
         const bool codesAreAll = header.restActive && header.book.isExact();
         if (options.keepSource && !codesAreAll) return std::nullopt;

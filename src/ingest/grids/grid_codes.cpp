@@ -23,6 +23,7 @@
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/leaf_bytes.h"
+#include "ingest/grids/level_set_band.h"
 #include "ingest/grids/tree_types.h"
 #include "ingest/readers.h"
 #include "ingest/values/float_kernels.h"
@@ -88,6 +89,19 @@ bool makeFog(TreeGrid& grid, const GridCodesOptions& options) {
     LevelSet<Tree> levelSet{grid};
     openvdb::tools::sdfToFogVolume(levelSet);
     return true;
+}
+
+// Returns whether more of a level set is active than was.
+bool completeLevelSet(TreeGrid& grid, const GridCodesOptions& options) {
+    const auto& surface = options.reading.levelSetSurface;
+    if (!surface || gridClassOf(grid.metadata) != kLevelSetClass) return false;
+    const std::uint64_t added = completeBand(grid, *surface);
+    if (added > 0) {
+        options.listener.warn(options.where +
+                              ": the level set's band ends too near to the surface; " +
+                              std::to_string(added) + " voxels beside it go on as its values do");
+    }
+    return added > 0 || surface->isSolid;
 }
 
 // Puts the codes of a leaf's active voxels where these are.
@@ -226,7 +240,8 @@ void fill(const GridCodesOptions& options, TreeGrid& grid, Volume& volume) {
         volume.replaced = scan.nonFinite;
         if (scan.nonFinite > 0) settleNonFinite(*grid.as<Tree>(), scan, options);
         volume.fromLevelSet = makeFog<Tree>(grid, options);
-        if (volume.replaced > 0 || volume.fromLevelSet)
+        const bool isCompleted = !volume.fromLevelSet && completeLevelSet(grid, options);
+        if (volume.replaced > 0 || volume.fromLevelSet || isCompleted)
             scan = scanLeaves(TreeLeaves(*grid.as<Tree>()), kNumbersAlone);
     }
     const Tree& tree = *grid.as<Tree>();

@@ -147,8 +147,8 @@ bool mayReadLeaves(const VdbFile& file, const VdbGrid& grid, const ReadOptions& 
     const bool mayNeedSource = options.keepInexact && grid.valueType() != "half";
     if (options.keepSource || options.bits || mayNeedSource) return false;
     const VdbMetadata metadata = file.metadata(grid);
-    const bool becomesFog = options.levelSetToFog && isLevelSet(metadata);
-    return !becomesFog && !isDeltaGrid(grid.type, metadata);
+    const bool changes = options.levelSetToFog || options.levelSetSurface;
+    return !(changes && isLevelSet(metadata)) && !isDeltaGrid(grid.type, metadata);
 }
 
 // Reads such a grid; nothing where that cannot be.

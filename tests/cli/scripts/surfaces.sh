@@ -55,11 +55,15 @@ draw xray_surface --mode xray --surface
 expect_same xray xray_surface
 expect_warning xray_surface "--surface: has no effect with --mode xray"
 
-# Near the ends of the band voxels are missing.
+# Near the ends of the band voxels are missing, and made.
+expect_silence plain
 draw inner --isovalue=-0.9
-expect_warning inner "--isovalue: got -0.9 near the end of the level set's band, -1.5 to 1.5, where surfaces have pits; expected -0.6 to 1.25"
+expect_warning inner "grid \"surface\": the level set's band ends too near to the surface; "
 draw outer --isovalue=1.4
-expect_warning outer "near the end of the level set's band"
+expect_warning outer "the level set's band ends too near to the surface"
+# Cut open it is solid.
+draw cut --crop 0:12,:,:
+expect_silence cut
 draw all --isovalue=3.5
 expect_warning all "all is inside, and shown is all of the volume, as a solid"
 
