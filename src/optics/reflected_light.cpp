@@ -35,10 +35,24 @@ glm::vec3 halfWay(const glm::dvec3& a, const glm::dvec3& b) {
     return glm::vec3(length > 0 ? (a + b) / length : glm::dvec3(0));
 }
 
+// How much more of a voxel at an outline has to be missing, of OwnLook::kAll, for slices that are
+// read between their voxels along an axis: neighbours share in what they show (docs/decisions.md).
+int blurOfOutlines(const LitScene& scene) {
+    constexpr double kWhole = 1e-6;
+    constexpr int kBlur = 15;
+    const glm::dvec3 step = glm::inverse(glm::dmat3(scene.worldFromVoxel)) * scene.camera.direction;
+    int blur = 0;
+    for (const double along : {step.y / step.x, step.z / step.x}) {
+        const bool isBetween = std::abs(along - std::round(along)) > kWhole;
+        if (isBetween || scene.camera.projection != Projection::kOrtho) blur += kBlur;
+    }
+    return blur;
+}
+
 }  // namespace
 
 ReflectedLight::ReflectedLight(const Shading& shading, const ClassTable& classes,
-                               const LitScene& scene)
+                               const LitScene& scene, bool isSolid)
     : LookLight(VoxelUnits(classes, brightestOf(shading, classes))),
       colors_(units().unitsOfClasses(classes)) {
     const Camera& camera = scene.camera;
@@ -47,6 +61,7 @@ ReflectedLight::ReflectedLight(const Shading& shading, const ClassTable& classes
     reflection_.ambient = float(shading.ambient);
     reflection_.shininess = float(shading.shininess);
     reflection_.hasSpecular = shading.specular > 0;
+    reflection_.isSolid = isSolid;
     reflection_.fromEye = camera.projection != Projection::kOrtho;
     reflection_.toCamera = glm::vec3(toCamera);
     for (const Light& light : shading.lights) {
@@ -58,12 +73,13 @@ ReflectedLight::ReflectedLight(const Shading& shading, const ClassTable& classes
                                     glm::vec3(shading.specular * intensity * shares)});
     }
     if (reflection_.fromEye) eye_.emplace(camera.eyeWorld(), scene.worldFromVoxel);
+    if (isSolid) setMoreMissing(blurOfOutlines(scene));
 }
 
 bool ReflectedLight::isLike(const LookLight& other) const {
     const auto* same = dynamic_cast<const ReflectedLight*>(&other);
-    return same && units() == same->units() && reflection_ == same->reflection_ &&
-           colors_ == same->colors_ && eye_ == same->eye_;
+    return same && moreMissing() == same->moreMissing() && units() == same->units() &&
+           reflection_ == same->reflection_ && colors_ == same->colors_ && eye_ == same->eye_;
 }
 
 void ReflectedLight::lightVoxels(const WordPlace& place, const std::uint16_t* classes,

@@ -13,7 +13,9 @@ namespace deltasplat {
 /// What surfaces reflect towards a camera. Looks are gradients (lookOfGradient).
 class ReflectedLight : public LookLight {
   public:
-    ReflectedLight(const Shading& shading, const ClassTable& classes, const LitScene& scene);
+    /// @param isSolid  as Reflection's
+    ReflectedLight(const Shading& shading, const ClassTable& classes, const LitScene& scene,
+                   bool isSolid = false);
     bool isLike(const LookLight& other) const override;
 
   protected:

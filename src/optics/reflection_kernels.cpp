@@ -34,6 +34,25 @@ HWY_INLINE Vector3 gradientsOf(const OwnLook* looks) {
             hn::ConvertTo(tag, hn::ShiftRight<16>(hn::ShiftLeft<16>(high)))};
 }
 
+// Of the two sides of a gradient the one that faces the camera.
+HWY_INLINE Vector3 turnedTo(const Vector3& toCamera, const Vector3& gradient) {
+    const auto isTurned = hn::Lt(dot(gradient, toCamera), hn::Zero(FullTag()));
+    return {hn::IfThenElse(isTurned, hn::Neg(gradient.x), gradient.x),
+            hn::IfThenElse(isTurned, hn::Neg(gradient.y), gradient.y),
+            hn::IfThenElse(isTurned, hn::Neg(gradient.z), gradient.z)};
+}
+
+// Voxels beyond an outline show through those that it cuts, and are lit as it is: across the line
+// of sight, as near to their own gradient as that can be.
+HWY_INLINE Vector3 outlinedTo(const Vector3& toCamera, const Vector3& gradient, Vector length) {
+    const auto away = hn::Min(dot(gradient, toCamera), hn::Zero(FullTag()));
+    const Vector3 across = sum(gradient, scaled(toCamera, hn::Neg(away)));
+    const auto left = hn::Max(hn::Sqrt(dot(across, across)), constant(1e-5));
+    const auto isBeyond = hn::Lt(away, hn::Zero(FullTag()));
+    const auto ratio = hn::IfThenElse(isBeyond, hn::Div(length, left), constant(1));
+    return scaled(across, ratio);
+}
+
 template <bool kFromEye>
 void reflectFrom(const Reflection& reflection, const WordToLight& word, WordUnits& units) {
     const FullTag tag;
@@ -45,11 +64,8 @@ void reflectFrom(const Reflection& reflection, const WordToLight& word, WordUnit
         const auto shaded = hn::Min(hn::Sqrt(dot(gradient, gradient)), constant(1));
         const auto unshaded = hn::Mul(constant(0.25), hn::Sub(constant(1), shaded));
         const auto perShaded = hn::Div(constant(1), hn::Max(shaded, constant(1e-5)));
-        // The side that faces the camera.
-        const auto isTurned = hn::Lt(dot(gradient, toCamera), zero);
-        const Vector3 normal{hn::IfThenElse(isTurned, hn::Neg(gradient.x), gradient.x),
-                             hn::IfThenElse(isTurned, hn::Neg(gradient.y), gradient.y),
-                             hn::IfThenElse(isTurned, hn::Neg(gradient.z), gradient.z)};
+        const Vector3 normal = reflection.isSolid ? outlinedTo(toCamera, gradient, shaded)
+                                                  : turnedTo(toCamera, gradient);
         Vector3 share = vectorOf(glm::vec3(reflection.ambient));
         Vector3 highlights{zero, zero, zero};
         for (const Ray& ray : reflection.rays) {

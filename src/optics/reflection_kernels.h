@@ -30,6 +30,10 @@ struct Reflection {
     float shininess;
     bool hasSpecular;
     std::vector<Ray> rays;
+    /// Whether gradients point out of what is solid: of those that face away from the camera
+    /// nothing is seen but what the outline shares with them. Otherwise either side of one may face
+    /// the camera.
+    bool isSolid;
     bool fromEye;        ///< each voxel has its own way to the camera
     glm::vec3 toCamera;  ///< of length 1, unless it has
 

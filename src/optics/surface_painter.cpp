@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "optics/painters.h"
 #include "optics/reflected_light.h"
@@ -19,7 +20,7 @@ Shading unlit() {
     return shading;
 }
 
-// Looks are directions of gradients, and how much of a voxel lies outside.
+// Looks are directions out of what is inside, and how much of a voxel lies outside.
 class SurfacePainter : public VoxelPainter {
   public:
     SurfacePainter(const Volume& volume, const Surface& surface, const Shading& shading)
@@ -54,7 +55,8 @@ class SurfacePainter : public VoxelPainter {
             // From the voxel's lowest corner to its highest.
             const float span =
                 std::abs(gx[n]) * size.x + std::abs(gy[n]) * size.y + std::abs(gz[n]) * size.z;
-            const int inside = insideOf(value, span);
+            const glm::vec3 steps(gx[n] * size.x, gy[n] * size.y, gz[n] * size.z);
+            const int inside = insideOf(value, span, std::sqrt(glm::dot(steps, steps)));
             classes[n] = inside > 0 ? 1 : 0;
             looks[n] = {};
             looks[n].missing = std::uint8_t(OwnLook::kAll - inside);
@@ -62,27 +64,28 @@ class SurfacePainter : public VoxelPainter {
             const glm::vec3 gradient = worldGradient(worldFromGradient_, *field, n);
             const float length = std::sqrt(gradient.x * gradient.x + gradient.y * gradient.y +
                                            gradient.z * gradient.z);
-            if (length > 0) setSlope(looks[n], kMostSlope / length * gradient);
+            if (length > 0) setSlope(looks[n], -kMostSlope / length * gradient);
         }
     }
 
     std::unique_ptr<const LookLight> lightOf(const ClassTable& classes,
                                              const LitScene* scene) const override {
-        return std::make_unique<ReflectedLight>(shading_, classes, *scene);
+        return std::make_unique<ReflectedLight>(shading_, classes, *scene, /*isSolid=*/true);
     }
 
   private:
     // Voxels below the surface, from which on nothing of a voxel can be seen.
     static constexpr float kDeep = 3;
-    // Of a voxel's span, how far the surface is moved inwards. Several slices show each some of
-    // what they share with what is outside, which makes things look larger (docs/decisions.md).
-    static constexpr float kInset = 0.25f;
+    // In voxels, how far the surface is moved inwards. Several slices show each some of what they
+    // share with what is outside, which makes things look larger (docs/decisions.md).
+    static constexpr float kInset = 0.45f;
 
     // The share of a voxel that lies inside, of OwnLook::kAll, if values change evenly.
-    static int insideOf(float value, float span) {
+    // @param step  what values change by across a voxel, along their gradient
+    static int insideOf(float value, float span, float step) {
         if (!(value == value)) return 0;
         if (!(span > 0)) return value >= 0 ? OwnLook::kAll : 0;
-        const float share = std::clamp(value / span + 0.5f - kInset, 0.0f, 1.0f);
+        const float share = std::clamp((value - kInset * step) / span + 0.5f, 0.0f, 1.0f);
         return int(share * float(OwnLook::kAll) + 0.5f);
     }
 

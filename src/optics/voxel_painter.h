@@ -98,14 +98,19 @@ class LookLight {
     virtual void lightVoxels(const WordPlace& place, const std::uint16_t* classes,
                              const OwnLook* looks, WordUnits& colors) const = 0;
     void setFine() { isFine_ = true; }
+    /// Lets more be missing of voxels that something is missing of.
+    /// @param share  of OwnLook::kAll
+    void setMoreMissing(int share) { moreMissing_ = share; }
+    int moreMissing() const { return moreMissing_; }
 
   private:
     void fade(const std::uint16_t* classes, const OwnLook* looks, WordUnits& colors) const;
-    static void leaveMissing(const OwnLook* looks, WordUnits& colors);
+    void leaveMissing(const OwnLook* looks, WordUnits& colors) const;
 
     VoxelUnits units_;
     double dimmest_;
     bool isFine_ = false;
+    int moreMissing_ = 0;
 };
 
 /// Blocks of 8x8x8 voxels.
