@@ -311,7 +311,7 @@ TreeGrid readSourceGrid(const DenseSource& source, std::optional<double> nonFini
     TreeGrid grid{readSourceTree(source, nonFinite, keepUnsigned, listener),
                   {},
                   makeMapIfAny(source.worldFromIndex)};
-    if (keepUnsigned) grid.metadata.insert(kSourceTypeKey, rawTypeName(source.type));
+    if (keepUnsigned) grid.metadata.insert(kSourceTypeKey, std::string(rawTypeName(source.type)));
     grid.metadata.insert(openvdb::GridBase::META_GRID_NAME, source.name);
     return grid;
 }
