@@ -128,7 +128,7 @@ std::string fragment(const std::string& content) {
 
 // A CT slice, packed as the file is.
 std::string cleanFile(const DicomPixels& pixels, const CellFormat& cells,
-                      const std::vector<std::string>& pieces) {
+                      const std::string& packed) {
     const std::string kClass = "1.2.840.10008.5.1.4.1.1.2";
     const std::string kInstance = "1.2.3.4";
     const std::string meta = name(0x00020002, "UI", kClass) + name(0x00020003, "UI", kInstance) +
@@ -141,8 +141,8 @@ std::string cleanFile(const DicomPixels& pixels, const CellFormat& cells,
                        number(0x00280101, cells.stored) + number(0x00280102, cells.stored - 1) +
                        number(0x00280103, cells.isSigned ? 1 : 0) +
                        head(0x7fe00010, "OB", kUndefined) + fragment("");
-    for (const std::string& piece : pieces) file += fragment(piece);
-    return file + littleEndian(0xfffe, 2) + littleEndian(0xe0dd, 2) + littleEndian(0, 4);
+    return file + fragment(packed) + littleEndian(0xfffe, 2) + littleEndian(0xe0dd, 2) +
+           littleEndian(0, 4);
 }
 
 // Where a child's libraries complain: libjpeg, inside of GDCM, makes up what a code stream lacks,
@@ -182,10 +182,10 @@ std::size_t pixelCount(const DicomPixels& pixels) {
 
 DicomCells unpackedCells(const DicomSlice& slice) {
     const DicomPixels& pixels = slice.pixels;
-    std::vector<std::string> pieces;
-    for (const DicomPixels::Piece& piece : pixels.pieces) pieces.push_back(readPiece(slice, piece));
+    std::string packed;  // in one piece: GDCM does not join those of JPEG 2000
+    for (const DicomPixels::Piece& piece : pixels.pieces) packed += readPiece(slice, piece);
     DicomCells cells;
-    cells.stream = checkedStream(slice, pieces.empty() ? "" : pieces[0]);
+    cells.stream = checkedStream(slice, packed);
     const CellFormat format = formatOf(pixels, cells.stream);
     const std::size_t bytes = pixelCount(pixels) * std::size_t(format.allocated / 8);
     constexpr double kTimes = 18;  // here, shared with the child, and what codecs take
@@ -193,7 +193,7 @@ DicomCells unpackedCells(const DicomSlice& slice) {
     cells.bits = format.allocated;
     cells.bigEndian = std::endian::native == std::endian::big;
     cells.bytes.resize(bytes);
-    const std::string clean = cleanFile(pixels, format, pieces);
+    const std::string clean = cleanFile(pixels, format, packed);
     const ClearedMemory cleared;
     // GDCM's codecs end the process where packed pixels are damaged.
     const bool done = inChild(
