@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "ingest/grids/tree_types.h"
+#include <openvdb/openvdb.h>
 #include "make_several.h"
 
 namespace {
