@@ -136,12 +136,13 @@ deltasplat_cli_test(several.diff_other.series EXIT 2 ARGS diff series thorax --s
     STDOUT_MATCHES "FAILURE")
 
 # A study is the slices below it, whatever else lies there.
-deltasplat_cli_test(several.list.study ARGS info --list study
+set(beside "deltasplat: warning: study: 1 files that are no DICOM are passed over, the first logo.png")
+deltasplat_cli_test(several.list.study ARGS info --list study STDERR "${beside}"
     STDOUT_MATCHES "^study
   study  uint16  -  [(]0, 0, 0[)] to [(]2, 1, 1[)]  series 1.2.8: CT, head
-  study  uint16  -  [(]0, 0, 0[)] to [(]2, 1, 1[)]  series 1.2.9: CT, legs
-")
+  study  uint16  -  [(]0, 0, 0[)] to [(]2, 1, 1[)]  series 1.2.9: CT, legs")
 deltasplat_cli_test(several.asks.study EXIT 3 ARGS render study -o out.exr
-    STDERR_MATCHES "study: got 2 DICOM series: 1.2.8 [(]CT, head, 3x2x2[)], 1.2.9 [(]CT, legs, 3x2x2[)]; expected one, chosen by --series UID")
+    STDERR "${beside}
+deltasplat: study: got 2 DICOM series: 1.2.8 (CT, head, 3x2x2), 1.2.9 (CT, legs, 3x2x2); expected one, chosen by --series UID")
 deltasplat_cli_test(several.one_file ARGS info study/legs/IM1
     STDOUT_MATCHES "grid +IM1.*dims +3 x 2 x 1.*range +10 to 15")
