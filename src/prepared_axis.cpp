@@ -135,7 +135,8 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     const Tolerance& tolerance = scene.options.tolerance;
     std::optional<ValueMixer> mixer;
     const VoxelPainter* painter = scene.painter.get();
-    if (parts.divides() || (painter && painter->choosesClasses())) mixer.emplace(volume, parts);
+    if (parts.divides() || (painter && painter->choosesClasses()))
+        mixer.emplace(volume, parts, scene.options.keepsLone);
     const Volume& levels = mixer ? mixer->levels() : volume;
     // What is held does not depend on the camera: straight ways decide.
     const double straight = planeDistance(volume.worldFromIndex, request.sliceAxis) / parts.slices;

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <glm/vector_relational.hpp>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -23,8 +24,8 @@ constexpr std::uint64_t kBuckets = 1 << 15;
 
 }  // namespace
 
-ValueMixer::ValueMixer(const Volume& volume, const Subdivision& parts)
-    : parts_(parts), levels_(volume), ownLevel_(kCodeCount) {
+ValueMixer::ValueMixer(const Volume& volume, const Subdivision& parts, bool keepsLone)
+    : parts_(parts), keepsLone_(keepsLone), levels_(volume), ownLevel_(kCodeCount) {
     levels_.codes = nullptr;
     levels_.uncut = nullptr;
     levels_.source = nullptr;
@@ -156,7 +157,8 @@ MixMap::MixMap(std::span<const Slot> slotMap, std::span<const float> opacitiesOf
     : slots(slotMap),
       opacities(slotMap.size()),
       ofMapped(opacitiesOfMapped.begin(), opacitiesOfMapped.end()) {
-    if (ofMapped.empty()) {
+    areAlike = ofMapped.empty();
+    if (areAlike) {
         ofMapped.assign(std::size_t(*std::max_element(slots.begin(), slots.end())) + 1, 1.0f);
     }
     ofMapped[kEmptySlot] = 0;
@@ -246,8 +248,8 @@ std::array<float, 512> leastAround(const MixWindow& window, bool alongSlicesOnly
 
 }  // namespace
 
-// Lets voxels be what they are of whose opacity, above what is around them, nothing is left in what
-// they become.
+// Lets voxels be seen of whose opacity, above what is around them, nothing is left in what they
+// become.
 // @param places  of voxels that this may be true of
 void ValueMixer::keepSeen(const MixWindow& window, const MixMap& map, const VoxelMasks& places,
                           std::span<BlockSlots> mixed) const {
@@ -274,10 +276,82 @@ void ValueMixer::keepSeen(const MixWindow& window, const MixMap& map, const Voxe
             const float least = (*around)[64 * s + std::size_t(n)];
             const bool isShown = most > 0 && most - least >= kLeast * (opacity - least);
             if (isShown) continue;
+            if (!keepsLone_ && !map.areAlike) {
+                showShares(window, map, place, mixed);
+                continue;
+            }
             forPartsOf(place,
                        [&](std::size_t part, std::size_t slot) { mixed[part][slot] = seen; });
         }
     }
+}
+
+// What values are mixed as: levels, if they are even, else values; NaN for what is not active.
+double ValueMixer::numberOf(Slot slot) const {
+    if (slot == kEmptySlot) return std::numeric_limits<double>::quiet_NaN();
+    if (even_.perCode == 0) return table_.ofCode[std::size_t(slot - 1)];
+    return double(slot - 1 - even_.lowest) * even_.perCode;
+}
+
+int ValueMixer::levelOfNumber(double number) const {
+    return even_.perCode == 0 ? levelOfValue(number) : int(number + 0.5);
+}
+
+// Mixes what is there at a place that lies half a voxel from a voxel's middle at most.
+double ValueMixer::numberAt(const MixWindow& window, const glm::ivec3& place,
+                            const glm::dvec3& off) const {
+    const glm::ivec3 step(off.x < 0 ? -1 : 1, off.y < 0 ? -1 : 1, off.z < 0 ? -1 : 1);
+    const auto mixed = [](double a, double b, double share) {
+        return std::isnan(b) ? a : a + std::abs(share) * (b - a);
+    };
+    const auto along = [&](int u, int v) {
+        const glm::ivec3 first = place + glm::ivec3(0, u * step.y, v * step.z);
+        return mixed(numberOf(window.at(first)),
+                     numberOf(window.at(first + glm::ivec3(step.x, 0, 0))), off.x);
+    };
+    return mixed(mixed(along(0, 0), along(1, 0), off.y), mixed(along(0, 1), along(1, 1), off.y),
+                 off.z);
+}
+
+// Returns what becomes of the level, of some on the way from one to another, that is closest to
+// being so opaque.
+Slot ValueMixer::slotAsOpaque(const MixMap& map, int from, int to, double opacity) const {
+    constexpr int kSteps = 64;
+    Slot closest = kEmptySlot;
+    double least = opacity;  // what nothing is off by
+    for (int n = 0; n <= kSteps; ++n) {
+        const auto slot = std::size_t(from + (to - from) * n / kSteps) + 1;
+        const double off = std::abs(double(map.opacities[slot]) - opacity);
+        if (map.slots[slot] == kEmptySlot || off >= least) continue;
+        least = off;
+        closest = map.slots[slot];
+    }
+    return closest;
+}
+
+// Makes what a voxel becomes as opaque as it is on average: what is seen of it lies between the
+// middles.
+void ValueMixer::showShares(const MixWindow& window, const MixMap& map, const glm::ivec3& place,
+                            std::span<BlockSlots> mixed) const {
+    const glm::ivec3 per(parts_.slices, parts_.within, parts_.within);
+    const int own = levelOf(Code(window.at(place) - 1));
+    int n = 0;
+    forPartsOf(place, [&](std::size_t part, std::size_t slot) {
+        const glm::ivec3 at(n / (per.y * per.z), n / per.z % per.y, n % per.z);
+        ++n;
+        // Along an axis along which nothing is divided nothing is mixed.
+        const auto levelAt = [&](const glm::dvec3& share) {
+            const glm::dvec3 off = (glm::dvec3(at) + share) / glm::dvec3(per) - 0.5;
+            const glm::dvec3 divided(glm::greaterThan(per, glm::ivec3(1)));
+            return levelOfNumber(numberAt(window, place, off * divided));
+        };
+        double sum = 0;
+        for (int k = 0; k < 8; ++k) {
+            const glm::dvec3 half(k >> 2 & 1, k >> 1 & 1, k & 1);
+            sum += double(map.opacities[std::size_t(levelAt(0.25 + 0.5 * half)) + 1]);
+        }
+        mixed[part][slot] = slotAsOpaque(map, levelAt(glm::dvec3(0.5)), own, sum / 8);
+    });
 }
 
 }  // namespace deltasplat

@@ -25,20 +25,23 @@ struct MixMap {
     std::span<const Slot> slots;
     std::vector<float> opacities;  ///< [kSlotCount]: of the slots of levels, 0 of what is not seen
     std::vector<float> ofMapped;   ///< [what becomes of them]
+    bool areAlike = false;         ///< whether no opacities were given
     std::size_t rising = 0;        ///< so many of the first opacities never fall
 };
 
 /// Divides voxels into thin ones. Their values are mixed from the voxels they lie between,
 /// linearly along each axis. What is not active has no value: a voxel beside it keeps its own, and
-/// so does one at the volume's end, so that a homogeneous slab stays what it is. Nor does a voxel
-/// that can be seen vanish: if all that it becomes is clear, it stays as it is.
+/// so does one at the volume's end, so that a homogeneous slab stays what it is. Of a voxel of
+/// which next to nothing would be seen in the middles of what it becomes, each of these is as
+/// opaque as it is on average; or else the voxel stays as it is.
 ///
 /// Mixed values are rounded to *levels*, at most as many as there are codes, and stand in for them.
 /// Every value that the volume has is a level, and there are evenly spaced ones between each and
 /// the next: as many as there is room for, most where values lie far apart for their size.
 class ValueMixer {
   public:
-    ValueMixer(const Volume& volume, const Subdivision& parts);
+    /// @param keepsLone  whether voxels stay as they are of which next to nothing would be seen
+    ValueMixer(const Volume& volume, const Subdivision& parts, bool keepsLone = false);
 
     const Subdivision& parts() const { return parts_; }
     /// The volume as classification sees it: its code book and histogram are those of levels, of
@@ -82,7 +85,15 @@ class ValueMixer {
     void keepSeen(const MixWindow& window, const MixMap& map, const VoxelMasks& places,
                   std::span<BlockSlots> mixed) const;
 
+    double numberOf(Slot slot) const;
+    int levelOfNumber(double number) const;
+    double numberAt(const MixWindow& window, const glm::ivec3& place, const glm::dvec3& off) const;
+    void showShares(const MixWindow& window, const MixMap& map, const glm::ivec3& place,
+                    std::span<BlockSlots> mixed) const;
+    Slot slotAsOpaque(const MixMap& map, int from, int to, double opacity) const;
+
     Subdivision parts_;
+    bool keepsLone_;
     Volume levels_;
     EvenLevels even_;
     TableLevels table_;

@@ -172,7 +172,7 @@ TEST(ValueMixer, WithinSlicesAloneIsUnmixed) {
 // What is too thin for any of its parts to reach what can be seen is drawn as it is.
 TEST(ValueMixer, NothingThatCanBeSeenVanishes) {
     const Volume volume = volumeOf(CodeBook::integer(), {0, 100});
-    const ValueMixer mixer(volume, {2, 2});
+    const ValueMixer mixer(volume, {2, 2}, true);
     for (const double threshold : {30.0, 50.0, 60.0, 99.0}) {
         std::vector<Slot> map(kSlotCount, kEmptySlot);
         for (int level = 0; level < kCodeCount; ++level) {
@@ -206,7 +206,7 @@ TEST(ValueMixer, NothingThatCanBeSeenVanishes) {
 // Haze around it hides nothing, as long as the voxel is clearly more opaque.
 TEST(ValueMixer, NothingVanishesInHaze) {
     const Volume volume = volumeOf(CodeBook::integer(), {2, 100});
-    const ValueMixer mixer(volume, {2, 2});
+    const ValueMixer mixer(volume, {2, 2}, true);
     std::vector<Slot> all(kSlotCount, kEmptySlot);
     for (int level = 0; level < kCodeCount; ++level)
         if (mixer.levels().histogram[std::size_t(level)] != 0)
@@ -233,10 +233,59 @@ TEST(ValueMixer, NothingVanishesInHaze) {
     }
 }
 
+// Of a voxel of which nothing would be seen in the middles of what it becomes, as much is seen as a
+// fine ray march of the values between voxels sees, and no more than that.
+TEST(ValueMixer, WhatIsSeenBetweenMiddlesIsSeenOnAverage) {
+    const Volume volume = volumeOf(CodeBook::integer(), {0, 200});
+    for (const Subdivision& parts : {Subdivision{2, 2}, Subdivision{4, 2}}) {
+        const ValueMixer mixer(volume, parts);
+        for (const double threshold : {90.0, 110.0, 130.0, 190.0}) {
+            SCOPED_TRACE(threshold);
+            // A ramp from there on.
+            const auto opacityOf = [&](double value) {
+                return std::clamp((value - threshold) / (200 - threshold), 0.0, 1.0);
+            };
+            std::vector<Slot> map(kSlotCount, kEmptySlot);
+            std::vector<float> opacities(kSlotCount);
+            for (int level = 0; level < kCodeCount; ++level) {
+                if (mixer.levels().histogram[std::size_t(level)] == 0) continue;
+                const double opacity = opacityOf(mixer.levels().codeBook.valueOf(Code(level)));
+                if (opacity == 0) continue;
+                map[std::size_t(level) + 1] = level + 1;
+                opacities[std::size_t(level) + 1] = float(opacity);
+            }
+            MixWindow window;
+            window.slots.fill(1);
+            window.at({3, 4, 5}) = 201;
+            std::vector<BlockSlots> blocks(std::size_t(parts.slices * parts.within * parts.within));
+            mixer.mix(window, MixMap(map, opacities), blocks);
+            double seen = 0;
+            for (const BlockSlots& block : blocks)
+                for (const Slot slot : block) seen += double(opacities[std::size_t(slot)]);
+            constexpr int kFine = 40;
+            double fine = 0;
+            for (int n = 0; n < kFine * kFine * kFine; ++n) {
+                const auto share = [](int i) { return 1 - std::abs((i + 0.5) / kFine - 0.5); };
+                fine += opacityOf(200 * share(n % kFine) * share(n / kFine % kFine) *
+                                  share(n / kFine / kFine));
+            }
+            seen /= parts.voxels();
+            fine /= kFine * kFine * kFine;
+            EXPECT_NEAR(seen, fine, 0.35 * fine + 0.005);
+            const ValueMixer keeps(volume, parts, true);
+            keeps.mix(window, MixMap(map, opacities), blocks);
+            double kept = 0;
+            for (const BlockSlots& block : blocks)
+                for (const Slot slot : block) kept += double(opacities[std::size_t(slot)]);
+            EXPECT_GE(kept / parts.voxels(), fine);
+        }
+    }
+}
+
 // What lies beside a voxel is not mixed with it where slices alone are divided, and has no say.
 TEST(ValueMixer, NothingVanishesInHazeBesideAnything) {
     const Volume volume = volumeOf(CodeBook::integer(), {0, 2, 100});
-    const ValueMixer mixer(volume, {2, 1});
+    const ValueMixer mixer(volume, {2, 1}, true);
     std::vector<Slot> map(kSlotCount, kEmptySlot);
     std::vector<float> opacities(kSlotCount);
     for (int level = 0; level < kCodeCount; ++level) {
@@ -342,7 +391,7 @@ struct PlainMix {
 // @param rise  whether higher levels are no less opaque, and most are clear
 void expectPlainMix(const std::vector<Code>& codes, const Subdivision& parts, bool rise) {
     const Volume volume = volumeOf(CodeBook::integer(), codes);
-    const ValueMixer mixer(volume, parts);
+    const ValueMixer mixer(volume, parts, true);
     std::mt19937 random(11);
     std::vector<Slot> slots(kSlotCount, kEmptySlot);
     const std::size_t highest = mixer.levelOf(codes.back());

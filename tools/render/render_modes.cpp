@@ -118,7 +118,7 @@ void warnOfUnusedModeOptions(const CLI::App& app, const RenderCommand& command,
         "--join",    "--extinction", "--unit-distance",   "--color-by",         "--shade",
         "--light",   "--ambient",    "--diffuse",         "--specular",         "--shininess",
         "--surface", "--isovalue",   "--surface-color",   "--gradient-opacity", "--density-scale",
-        "--filter",  "--sigma"};
+        "--filter",  "--sigma",      "--keep-lone"};
     for (const std::vector<std::string>& ofFog : {scatterOptions(), mediumOptions()})
         unused.insert(unused.end(), ofFog.begin(), ofFog.end());
     if (!colorsValues(command) || storesValues(command))

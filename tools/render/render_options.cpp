@@ -372,6 +372,10 @@ void addSplattingOptions(CLI::App& app, PictureOptions& picture) {
             "--resolution is given, but not for thin fog (opacities up to\n0.25 a voxel), "
             "labels and colours that jump, nor more\nthan " +
             std::to_string(kMostDivided) + " blocks of voxels; else 0, and slices may\nbe joined)");
+    group.addFlag("--keep-lone", options.keepsLone,
+                  "Of divided voxels, draws as a whole one that would hardly be seen between\n"
+                  "its neighbours, so that no speck fades and thin things look thicker (else\n"
+                  "as dense as it is on average, as ray casters show it)");
     group.addValue(
         "--join", "N", picture.join, sliceCount(),
         "Slices that may be drawn as one, 1, 2, 4, 8, 16 or 32, where a\nvoxel of a large volume "
