@@ -11,6 +11,9 @@ namespace {
 // Voxels of a slice that are read at a time, at most.
 constexpr double kMostVoxels = 128 * 128;
 
+// Of a voxel: means of less are made of rounding.
+constexpr double kLeastShare = 0x1p-10;
+
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
 // A slice of a patch where a ray of which only a part is seen meets it.
@@ -176,7 +179,8 @@ RayFound RayFollower::foundAt(std::size_t i) const {
     if (rule_ == RayRule::kSum) return {found, 0, true};
     if (rule_ == RayRule::kMean) {
         const double share = double(shares_.found[i]);
-        return {share > 0 ? found / share : 0, 0, share > 0, share};
+        const bool isMet = share > kLeastShare;
+        return {isMet ? found / share : 0, 0, isMet, share};
     }
     const bool isMet = sums_.met[i] > 0;
     return {isMet ? found : 0, double(sums_.rest[i]), isMet};
