@@ -313,19 +313,33 @@ double ValueMixer::numberAt(const MixWindow& window, const glm::ivec3& place,
                  off.z);
 }
 
-// Returns what becomes of the level, of some on the way from one to another, that is closest to
-// being so opaque.
+// Returns what becomes of the level, of those on the way from one to another, that is closest to
+// being so opaque: of some of them, then of some around that.
 Slot ValueMixer::slotAsOpaque(const MixMap& map, int from, int to, double opacity) const {
     constexpr int kSteps = 64;
     Slot closest = kEmptySlot;
     double least = opacity;  // what nothing is off by
-    for (int n = 0; n <= kSteps; ++n) {
-        const auto slot = std::size_t(from + (to - from) * n / kSteps) + 1;
-        const double off = std::abs(double(map.opacities[slot]) - opacity);
-        if (map.slots[slot] == kEmptySlot || off >= least) continue;
-        least = off;
-        closest = map.slots[slot];
-    }
+    const auto look = [&](int first, int last) {
+        int best = first;
+        double leastHere = std::numeric_limits<double>::infinity();
+        for (int n = 0; n <= kSteps; ++n) {
+            const int level = first + (last - first) * n / kSteps;
+            const auto slot = std::size_t(level) + 1;
+            const double off = std::abs(double(map.opacities[slot]) - opacity);
+            if (off < leastHere) {
+                leastHere = off;
+                best = level;
+            }
+            if (map.slots[slot] == kEmptySlot || off >= least) continue;
+            least = off;
+            closest = map.slots[slot];
+        }
+        return best;
+    };
+    const int around = look(from, to);
+    const auto [low, high] = std::minmax(from, to);
+    const int step = (high - low) / kSteps;
+    if (step > 0) look(std::max(around - step, low), std::min(around + step, high));
     return closest;
 }
 
@@ -346,11 +360,11 @@ void ValueMixer::showShares(const MixWindow& window, const MixMap& map, const gl
             return levelOfNumber(numberAt(window, place, off * divided));
         };
         double sum = 0;
-        for (int k = 0; k < 8; ++k) {
-            const glm::dvec3 half(k >> 2 & 1, k >> 1 & 1, k & 1);
-            sum += double(map.opacities[std::size_t(levelAt(0.25 + 0.5 * half)) + 1]);
+        for (int k = 0; k < 27; ++k) {
+            const glm::dvec3 third(k / 9, k / 3 % 3, k % 3);
+            sum += double(map.opacities[std::size_t(levelAt((third + 0.5) / 3.0)) + 1]);
         }
-        mixed[part][slot] = slotAsOpaque(map, levelAt(glm::dvec3(0.5)), own, sum / 8);
+        mixed[part][slot] = slotAsOpaque(map, levelAt(glm::dvec3(0.5)), own, sum / 27);
     });
 }
 
