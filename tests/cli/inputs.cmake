@@ -139,7 +139,7 @@ deltasplat_cli_test(input.tf.range ARGS render cube_8x8x8_uint8.raw -o out.exr -
     STDERR "deltasplat: warning: --range: has no effect on a transfer function that is not normalized")
 deltasplat_cli_test(render.join.of_whole_voxels ARGS render ${cube} -o j.png --join 8 --between 0 CREATES j.png
     STDERR "deltasplat: warning: --join: has no effect with --between")
-deltasplat_cli_test(render.join.of_held_voxels ARGS render ${cube} -o j.png --join 8 --tolerance 0.1 CREATES j.png
+deltasplat_cli_test(render.join.of_held_voxels ARGS render ${cube} -o j.png --join 8 --tolerance 0.1 --method delta CREATES j.png
     STDERR "deltasplat: warning: --join: has no effect with a tolerance
 tolerance 0.1 of the colour: error of a pixel at most, scene-linear and premultiplied: color 0.313, alpha 0.157")
 deltasplat_cli_test(render.join.of_exact_voxels ARGS render ${cube} -o j.png --join 8 --tolerance 0 CREATES j.png)

@@ -74,15 +74,23 @@ deltasplat_cli_test(output.fine.fsync ARGS render ball.vdb -o out.exr --fsync CR
 deltasplat_cli_test(output.fine.verbose CREATES out.exr ARGS render ball.vdb -o out.exr -v
     STDERR_MATCHES "code book .*method auto: .* stamps.*slices along z.*seconds: read .*")
 # A tolerance says what it may do to the picture.
-deltasplat_cli_test(output.tolerance CREATES out.exr ARGS render ${cube} -o out.exr --tolerance 0.02
+deltasplat_cli_test(output.tolerance CREATES out.exr ARGS render ${cube} -o out.exr --tolerance 0.02 --method delta
     STDERR_MATCHES "tolerance 0.02 of the colour: error of a pixel at most, scene-linear and premultiplied: color 0.0[0-9]*, alpha 0.031[0-9]*")
 # What is wrong of alpha is wrong of the background behind it.
 deltasplat_cli_test(output.tolerance_background CREATES out.exr
-    ARGS render ${cube} -o out.exr --tolerance 0.02 --background 8,0,0,0.5
+    ARGS render ${cube} -o out.exr --tolerance 0.02 --method delta --background 8,0,0,0.5
     STDERR_MATCHES "tolerance .*premultiplied: color 0.188, alpha 0.0157")
 deltasplat_cli_test(output.tolerance_value CREATES out.exr
-    ARGS render ${cube} -o out.exr --tolerance-value 2
+    ARGS render ${cube} -o out.exr --tolerance-value 2 --method delta
     STDERR "tolerance 2 data units: error of a pixel at most, scene-linear and premultiplied: unknown")
+# Where it takes longer than it saves it is left out, which is said; with wide footprints it is not.
+deltasplat_cli_test(output.tolerance_auto CREATES out.exr
+    ARGS render ${cube} -o out.exr --tolerance 0.02
+    STDERR "deltasplat: warning: --tolerance: left out by --method auto, for holding values takes longer than it saves without --sigma; --method delta holds them")
+deltasplat_cli_test(output.tolerance_none CREATES out.exr
+    ARGS render ${cube} -o out.exr --tolerance 0)
+deltasplat_cli_test(output.tolerance_sigma CREATES out.exr
+    ARGS render ${cube} -o out.exr --tolerance 0.02 --sigma 1 STDERR_MATCHES "^tolerance 0.02 ")
 deltasplat_cli_test(output.tolerance_quiet CREATES out.exr
     ARGS render ${cube} -o out.exr --tolerance 0.02 -q)
 deltasplat_cli_test(output.fine.synth ARGS synth slab out.vdb CREATES out.vdb)

@@ -62,6 +62,26 @@ void warnOfUnusedJoin(const CLI::App& app, const RenderCommand& command, Progres
         display.warn("--join: has no effect with a tolerance");
 }
 
+// Whether holding values within a tolerance takes longer than it saves: where a voxel, or what it
+// is divided into, is seen in one pixel and looks as its value does. Who asks for a method has it.
+bool toleranceDoesNotPay(const PictureOptions& picture) {
+    const RenderOptions& render = picture.render;
+    const bool isLit = picture.shading.asked() || picture.scatter.asked() ||
+                       picture.medium.asked() || picture.surface.asked;
+    return render.mode == Mode::kComposite && render.method == Method::kAuto && !render.sigma &&
+           !isLit;
+}
+
+void warnOfTolerance(const CLI::App& app, const RenderCommand& command, ProgressDisplay& display) {
+    if (!toleranceDoesNotPay(command.picture)) return;
+    for (const char* option : {"--tolerance", "--tolerance-value"}) {
+        if (isGiven(app, option) && app.get_option(option)->as<double>() > 0)
+            display.warn(std::string(option) +
+                         ": left out by --method auto, for holding values takes longer than it "
+                         "saves without --sigma; --method delta holds them");
+    }
+}
+
 // @param inputs  all that are read
 void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command, Files inputs,
                          ProgressDisplay& display) {
@@ -79,6 +99,7 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command, File
     warnOfUnusedColorOptions(app, command, display);
     warnOfUnusedModeOptions(app, command, display);
     if (command.picture.render.mode != Mode::kComposite) return;
+    warnOfTolerance(app, command, display);
     warnOfUnusedJoin(app, command, display);
     warnOfUnusedScatterOptions(app, command.picture.scatter, command.picture.shading,
                                command.picture.medium.emissionLights.has_value(), display);
@@ -197,6 +218,7 @@ void prepare(const CLI::App& app, RenderCommand& command, std::size_t pictures,
     applyLayers(app, command.picture);
     applySurface(app, command.picture.render.mode, isFog(command.picture), command.picture.surface,
                  command.picture.read);
+    if (toleranceDoesNotPay(command.picture)) command.picture.render.tolerance = {};
 }
 
 void runBatch(const CLI::App& app, const RenderCommand& command, const Session& session) {

@@ -62,11 +62,11 @@ expect_part() { # NAME SUFFIX OPTIONS...
 eye=(--projection perspective --fov 40 --distance 60)
 expect_part light exr "${near[@]}" --background 0.1,0.2,0.3,0.5
 expect_part channels exr "${near[@]}" --aov depth,normal
-expect_part eye exr "${eye[@]}" --tolerance 0.05
+expect_part eye exr "${eye[@]}" --tolerance 0.05 --method delta
 expect_part values exr "${near[@]}" --mode mip
 expect_part bytes png "${near[@]}" --background 0.1,0.2,0.3
 expect_part greys png "${near[@]}" --mode xray
-render corners.exr "${eye[@]}" --tolerance 0.05 --region 23,19,43,35
+render corners.exr "${eye[@]}" --tolerance 0.05 --method delta --region 23,19,43,35
 expect_same corners eye_part
 bound() { info "$1" | grep -o 'errorBound: .*'; }
 [[ $(bound eye_part.exr) == *[1-9]* ]] || fail "region: got no bound of what tolerance changes"

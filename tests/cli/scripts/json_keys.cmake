@@ -191,7 +191,7 @@ foreach(method traditional sparse delta auto)
         expect_keys("${bench}" "${where};${stage}" "min;median")
     endforeach()
     run(render slab_12x10x8_uint8.raw -o slab.exr --size 16x16 --method ${method}
-        --tolerance-value 1 --stats stats.json -q)
+        --tolerance-value 1 --sigma 1 --stats stats.json -q)
     file(READ ${SCRATCH}/stats.json stats)
     string(JSON stamps GET "${stats}" stamps)
     string(JSON bound TYPE "${stats}" error_bound alpha)

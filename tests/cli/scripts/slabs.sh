@@ -123,7 +123,7 @@ grep -q 'partCommandLine: "deltasplat render .*--slab-range 1/2' <<<"$("$oiiotoo
     fail "all.png does not say how its parts were made"
 
 # The promise of a tolerance is the same.
-tolerant=(cloud.vdb --size 40x40 --tolerance 0.1)
+tolerant=(cloud.vdb --size 40x40 --tolerance 0.1 --method delta)
 split 2 t "${tolerant[@]}"
 expect_code 0 "$program" render "${tolerant[@]}" -o one.exr --background 1,1,1 --float
 cp stderr.txt one.txt
