@@ -37,17 +37,17 @@ done
 expect_metadata all1/a.2.exr input "shots/a.2.vdb"
 
 # Confined, they lie in the folder before the first wildcard, whatever folders are links.
-mkdir -p up/own secret
+mkdir -p linked_to/own secret
 cp shots/a.1.vdb secret/x.vdb
-cp shots/a.1.vdb up/own/y.vdb
-ln -s ../secret up/a
-ln -s own up/b
-"$program" render 'up/*/*.vdb' -o 'loose/{dir}.exr' "${small[@]}"
+cp shots/a.1.vdb linked_to/own/y.vdb
+ln -s ../secret linked_to/a
+ln -s own linked_to/b
+"$program" render 'linked_to/*/*.vdb' -o 'loose/{dir}.exr' "${small[@]}"
 expect_tree "a.exr b.exr own.exr" loose
-expect_code 3 "$program" render 'up/*/*.vdb' -o 'bound/{dir}.exr' "${small[@]}" --confine
-expect_said "deltasplat: up/a/x.vdb: got a folder outside of up, in which the pattern looks; expected folders inside of it (--confine)"
+expect_code 3 "$program" render 'linked_to/*/*.vdb' -o 'bound/{dir}.exr' "${small[@]}" --confine
+expect_said "deltasplat: linked_to/a/x.vdb: got a folder outside of linked_to, in which the pattern looks; expected folders inside of it (--confine)"
 expect_tree "b.exr own.exr" bound
-expect_code 0 "$program" render 'up/a/*.vdb' -o 'bound/{name}.exr' "${small[@]}" --confine
+expect_code 0 "$program" render 'linked_to/a/*.vdb' -o 'bound/{name}.exr' "${small[@]}" --confine
 
 # Names of outputs.
 "$program" render 'shots/?.[12].vdb' -o 'frames/f.{frame}.exr' --stats 'stats/{name}.json' "${small[@]}"
@@ -185,7 +185,7 @@ expect_tree "b.png index.html" scene
 expect_said "deltasplat: 2 of 3 pictures failed: scenes/aa.usda, scenes/zz.usda"
 for name in aa zz; do
     grep -q "^deltasplat: scenes/$name.usda:1: got " stderr.txt || fail "$name.usda is not told of"
-    grep -q "^  scenes/$name.usda  line 1: got " stderr.txt || fail "$name.usda is not in the table"
+    [[ $(grep -c "scenes/$name.usda:1: got " stderr.txt) == 1 ]] || fail "$name.usda is told of twice"
 done
 "$program" render 'shots/a.?.vdb' -o 'slate/{name}.png' --slate "${cells[@]}" --size 160x120
 "$program" render shots/a.2.vdb -o one.png --annotate a.2.vdb "${cells[@]}" --size 160x120

@@ -57,10 +57,10 @@ expect_whole 100 100
 mkdir shots
 for i in 1 2 3; do cp cloud.vdb shots/$i.vdb; done
 umount disk
-mount -t tmpfs -o size=8k none disk
+mount -t tmpfs -o size=4k none disk
 expect_code 4 "$program" render 'shots/*.vdb' -o 'disk/{name}.exr' --size 48x48 --compression none \
     --index disk/index.html -q
-[[ $(grep -c '^deltasplat: disk/[123].exr: cannot be written: No space left on device$' stderr.txt) == 3 &&
+[[ $(grep -c '^deltasplat: shots/[123].vdb: disk/[123].exr: cannot be written: No space left on device$' stderr.txt) == 3 &&
     $(wc -l <stderr.txt) == 5 ]] || fail "got $(cat stderr.txt)"
 [[ $(tail -n 1 stderr.txt) == "deltasplat: 3 of 3 pictures failed: shots/1.vdb, shots/2.vdb, shots/3.vdb" ]] ||
     fail "got $(tail -n 1 stderr.txt)"

@@ -4,6 +4,7 @@
 # slab of 10x8x4 voxels of 255 in 12x10x8 voxels of 0.
 # Usage: modes.sh PROGRAM OIIOTOOL SCRATCH
 source "${BASH_SOURCE%/*}/pictures.sh"
+source "${BASH_SOURCE%/*}/runs.sh"
 begin "$@"
 slab=slab_12x10x8_uint8.raw
 "$program" synth slab "$slab" --dims 12x10x8 -q
