@@ -343,6 +343,19 @@ TEST(Tiff, WhatOtherProgramsSay) {
     EXPECT_EQ(valuesIn("c.tif"), ramp<double>(48));
 }
 
+// OpenImageIO would read the first of its slices.
+TEST(Tiff, PagesOfSeveralSlices) {
+    const TempFolder folder;
+    TiffPageBytes page = page16(0);
+    page.more[32997] = {3};
+    writeBytes("a.tif", tiffBytes({page}, true, planes16(1, 3)));
+    expectRefused("a.tif: got page 1 of 3 slices (ImageDepth); expected a page for each slice",
+                  "a.tif");
+    page.more[32997] = {1};
+    writeBytes("b.tif", tiffBytes({page}));
+    EXPECT_EQ(valuesIn("b.tif"), ramp<double>(12));
+}
+
 TEST(Tiff, ThumbnailsAreLeftOut) {
     const TempFolder folder;
     TiffPageBytes small = page16(9);

@@ -24,7 +24,7 @@ constexpr int kKind = 254, kOldKind = 255, kWidth = 256, kHeight = 257, kBits = 
               kCompression = 259, kPhotometric = 262, kDescription = 270, kStripPlaces = 273,
               kSamples = 277, kStripRows = 278, kStripBytes = 279, kAcross = 282, kDown = 283,
               kPlanar = 284, kResolutionUnit = 296, kTileWidth = 322, kTileHeight = 323,
-              kTilePlaces = 324, kTileBytes = 325, kMetaMorph = 33629;
+              kTilePlaces = 324, kTileBytes = 325, kDepth = 32997, kMetaMorph = 33629;
 constexpr std::uint64_t kUnpacked = 1, kSeparate = 2, kWhiteIsZero = 0, kBlackIsZero = 1,
                         kPalette = 3, kYcbcr = 6;
 constexpr std::uint64_t kReducedOrMask = 1 | 4, kOldReduced = 2;
@@ -245,6 +245,10 @@ class Walk {
     void requirePixels(const Table& table) const {
         const std::uint64_t width = lengthOf(table, kWidth, "a width");
         const std::uint64_t height = lengthOf(table, kHeight, "a height");
+        // OpenImageIO would read the first of them.
+        if (const std::uint64_t depth = valueOf(table, kDepth, 1); depth > 1)
+            refuse(page() + " of " + std::to_string(depth) + " slices (ImageDepth)",
+                   "a page for each slice");
         const bool tiles = table.contains(kTileWidth);
         const std::uint64_t columns = tiles ? lengthOf(table, kTileWidth, "tiles") : width;
         const std::uint64_t rows = tiles ? lengthOf(table, kTileHeight, "tiles")

@@ -3,6 +3,7 @@
 # Colour management, beside what another program makes of the same with the same configuration.
 # Usage: colors.sh PROGRAM OIIOTOOL SCRATCH DATA
 source "${BASH_SOURCE%/*}/pictures.sh"
+source "${BASH_SOURCE%/*}/runs.sh"
 begin "$@"
 data=$4
 config=$data/config.ocio
@@ -50,3 +51,17 @@ cp "$data/swap.cube" .
 render swapped.png --background 0.2,0.1,0.4 --dither 0 --look swap.cube
 "$oiiotool" -q bare.png --ch B,G,R,A --chnames R,G,B,A -o swap_expected.png
 expect_same swapped.png swap_expected.png 0.005
+
+# Braces in a table that cannot be read, or in its name, are no format of a message.
+printf 'LUT_1D_SIZE 2\n0 0 0\n1 1 1\n{:x \033[31mRED\a\n' >brace.cube
+mkdir 'a{b}'
+cp brace.cube swap.cube 'a{b}'
+for file in brace.cube 'a{b}/brace.cube'; do
+    expect_code 3 "$program" render engine_32x32x32_uint8.raw -o no.png --size 9x9 -q --look "$file"
+    [[ $(wc -l <stderr.txt) == 1 && $(<stderr.txt) == *"got $file: "* ]] ||
+        fail "$file: got $(<stderr.txt); expected one line that names it"
+    ! grep -q $'\033' stderr.txt || fail "$file: got its escapes"
+done
+expect_files "" 'no.png*'
+render braced.png --background 0.2,0.1,0.4 --dither 0 --look 'a{b}/swap.cube'
+expect_same braced.png swapped.png

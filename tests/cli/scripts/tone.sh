@@ -4,6 +4,7 @@
 # an opaque slab of 10x8x4 voxels in 12x10x8, four times as bright as white.
 # Usage: tone.sh PROGRAM OIIOTOOL SCRATCH
 source "${BASH_SOURCE%/*}/pictures.sh"
+source "${BASH_SOURCE%/*}/runs.sh"
 begin "$@"
 slab=slab_12x10x8_uint8.raw
 "$program" synth slab "$slab" --dims 12x10x8 -q
@@ -88,3 +89,31 @@ for mode in mip xray; do
     expect_same values.png same.png
     expect_metadata same.png tone ""
 done
+
+# What halves do not hold is said, wherever it comes from; a .png promises no more than is so.
+sed 's/, 4, 1.2/, 1e6, 1.2/g' bright.json >light.json
+front=("$slab" --view front --frame-width 16 --size 16x16 -q)
+clipped='are brighter than 65504, the most that halves hold, and clipped to it: --float keeps them'
+says() { # OUTPUT LIGHT OPTIONS...
+    expect_code 0 "$program" render "${front[@]}" -o "$1" --tf "$2" "${@:3}"
+    grep -q "^deltasplat: warning: $1: [0-9]* pixels $clipped$" stderr.txt ||
+        fail "$*: got $(<stderr.txt); expected a word of halves"
+}
+says_nothing() {
+    expect_code 0 "$program" render "${front[@]}" -o "$1" --tf "$2" "${@:3}"
+    ! grep -q 65504 stderr.txt || fail "$*: got $(<stderr.txt); expected no word of halves"
+}
+says half.exr light.json
+expect_pixel half.exr 8 8 "65504.000000 1.200195 0.080017 1.000000"
+says behind.exr bright.json --background 1e6,0,0
+grep -q ": $((16 * 16 - 10 * 8)) pixels" stderr.txt || fail "behind.exr: got $(<stderr.txt)"
+says part.exr light.json --region 8x8+4+4
+says deep.exr light.json --deep
+says_nothing whole.exr light.json --float
+expect_pixel whole.exr 8 8 "1000000.000000 1.200000 0.080000 1.000000"
+says_nothing deep_whole.exr light.json --deep --float
+says_nothing bright.exr bright.json
+expect_code 0 "$program" render "${front[@]}" -o light.png --tf light.json
+grep -q 'an .exr with --float keeps them$' stderr.txt || fail "light.png: got $(<stderr.txt)"
+expect_code 0 "$program" render "${front[@]}" -o bright.png --tf bright.json
+grep -q 'an .exr keeps them$' stderr.txt || fail "bright.png: got $(<stderr.txt)"
