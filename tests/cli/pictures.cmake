@@ -94,7 +94,7 @@ deltasplat_script_test(colors colors.sh
 deltasplat_script_test(exr exr.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/exr)
 deltasplat_script_test(tone tone.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/tone)
 deltasplat_script_test(labels_first labels_first.sh
-    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/labels_first $<BOOL:${DELTASPLAT_ITK}>)
+    ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/labels_first)
 deltasplat_script_test(annotations annotations.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/annotations)
 deltasplat_script_test(identity.simd identity.sh

@@ -42,6 +42,19 @@ TEST(ReadNpy, LastIndexIsX) {
     }
 }
 
+TEST(ReadNpy, PackedByContent) {
+    const TempFolder folder;
+    writeGzip("a.npy.gz", sample());
+    writeGzip("b.npy", sample());
+    writeBytes("c.npy.gz", sample());
+    for (const char* const name : {"a.npy.gz", "b.npy", "c.npy.gz"}) {
+        EXPECT_EQ(valuesOf(readVolume(name)), ramp<double>(24)) << name;
+        EXPECT_EQ(readVolume(name).name, std::string(1, name[0]));
+    }
+    writeGzip("d.npy.gz", sample().substr(0, 20));
+    expectRefused("d.npy.gz: got a header that is cut short; expected a whole one", "d.npy.gz");
+}
+
 TEST(ReadNpy, FirstIndexIsXInFortranOrder) {
     const TempFolder folder;
     writeBytes("a.npy",

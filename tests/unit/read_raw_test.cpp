@@ -280,6 +280,21 @@ TEST(ReadRaw, GzipEqualsPlain) {
     }
 }
 
+// Packed or plain is what the bytes are, not what the name says.
+TEST(ReadRaw, PackedByContent) {
+    const TempFolder folder;
+    Plain<std::uint8_t> plain = randomPlain<std::uint8_t>({17, 19, 23}, 0, 256, 5);
+    writeGzip(plain.file("uint8"), bytesOf(plain.values));
+    expectSame(readVolume(plain.file("uint8")), plain);
+    writeBytes(plain.file("uint8") + ".gz", bytesOf(plain.values));
+    expectSame(readVolume(plain.file("uint8") + ".gz"), plain);
+    // Values that begin as gzip does.
+    Plain<std::uint8_t> alike = plain;
+    alike.values[0] = 0x1f, alike.values[1] = 0x8b, alike.values[2] = 8;
+    writeBytes(plain.file("uint8"), bytesOf(alike.values));
+    expectSame(readVolume(plain.file("uint8")), alike);
+}
+
 TEST(ReadRaw, SkipsAHeader) {
     const TempFolder folder;
     Plain<std::uint8_t> plain = randomPlain<std::uint8_t>({9, 8, 7}, 0, 256, 6);

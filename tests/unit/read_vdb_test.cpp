@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/threads.h"
 #include "ingest/grids/tree_types.h"
@@ -38,6 +39,34 @@ TEST(ReadVdb, FloatsAreSpreadOverTheirRange) {
     EXPECT_EQ(volume.codeBook.kind, CodeBook::Kind::kLinear);
     EXPECT_EQ(volume.valueMin, -0.25);
     expectSame(volume, *grid, volume.codeBook.step * 0.5000001);
+}
+
+// Under gzip or not is what the bytes are, whatever the name says.
+TEST(ReadVdb, PackedByContent) {
+    const TempFolder folder;
+    const auto grid = makeGrid<openvdb::FloatGrid>(
+        "density", [](int i) { return 0.5f * float(i); }, 0.125f);
+    writeGrids("a.vdb", {grid});
+    const std::string bytes = testing::readBytes("a.vdb");
+    testing::writeGzip("b.vdb.gz", bytes);
+    testing::writeGzip("c.vdb", bytes);
+    testing::writeBytes("d.vdb.gz", bytes);
+    for (const char* const name : {"b.vdb.gz", "c.vdb", "d.vdb.gz"}) {
+        SCOPED_TRACE(name);
+        ReadOptions kept;
+        kept.keepSource = true;
+        for (const ReadOptions& options : {ReadOptions(), kept}) {
+            const Volume volume = readVolume(name, options);
+            EXPECT_EQ(volume.name, "density");
+            expectSame(volume, *grid, 0);
+        }
+        EXPECT_EQ(listVolumes(name).at(0).name, "density");
+    }
+    const std::string packed = testing::readBytes("b.vdb.gz");
+    testing::writeBytes("e.vdb.gz", packed.substr(0, packed.size() / 2));
+    testing::expectError(ErrorCode::kInput,
+                         "e.vdb.gz: got a gzip stream that is cut short; expected a whole one",
+                         [] { readVolume("e.vdb.gz"); });
 }
 
 TEST(ReadVdb, HalvesAreExact) {

@@ -50,14 +50,15 @@ void checkVolumeFile(const std::filesystem::path& file);
 /// - `.vdb`: any number of volumes, Blosc-compressed, in half precision where that is exact. A
 ///   volume that has its source writes that grid: values, active states, transform, class and
 ///   metadata. Others get a float grid where floats hold every value (otherwise int32 or double)
-///   whose metadata `deltasplat_source_type`, `deltasplat_box_min`, `deltasplat_box_max` and
-///   `deltasplat_space` say what it was.
+///   whose metadata `deltasplat_source_type`, `deltasplat_box_min`, `deltasplat_box_max`,
+///   `deltasplat_space`, `deltasplat_length_unit` and `deltasplat_labels` say what it was.
 /// - `.nrrd`, `.nhdr` (gzip inside), `.mhd`, `.mha`, `.nii`, `.nii.gz`, `.raw`, `.raw.gz`: one
 ///   volume, every voxel of its box (or of the one in the metadata, if that holds it), little
 ///   endian, x fastest. Voxels keep their type (`deltasplat_source_type` if there is one and it
 ///   holds every value); inactive ones are written with the value they hold. World space is LPS in
-///   MetaImage and RAS in NIfTI, as these formats have it; a volume whose `space` is empty keeps
-///   its numbers.
+///   MetaImage and RAS in NIfTI, as these formats have it, in millimetres where the unit is known;
+///   a volume whose `space` and `lengthUnit` are empty keeps its numbers. Names of labels go into
+///   NRRD (segments of 3D Slicer), that values are labels into MetaImage and NIfTI as well.
 ///
 /// Files appear only when they are whole. Values come from Volume::source if it is there (`codes`
 /// may then be empty), otherwise from the codes; memory for a few slices is needed beyond the

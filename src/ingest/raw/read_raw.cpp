@@ -11,10 +11,12 @@ namespace deltasplat {
 DenseSource openRaw(const std::filesystem::path& path, const RawFormat& format) {
     RawFile file{path, resolveRawLayout(path, format)};
     requireRegularFile(path);
-    // Values may begin as gzip does: what has the size of plain ones is plain, but for its name.
+    // What it begins with tells, but that values may begin as gzip does, and a packed file be cut
+    // or damaged: then name and size do.
     const bool named = lowerExtension(path) == ".raw.gz";
     const std::uint64_t plain = file.layout.skipBytes + file.layout.dataBytes();
-    if (named || std::filesystem::file_size(path) != plain) file.packing = packingOf(path);
+    const bool fits = std::filesystem::file_size(path) == plain;
+    file.packing = named != fits ? (named ? Packing::kGzip : Packing::kNone) : packingOf(path);
     requireRawSize(file);
     DenseSource source = denseSourceOf(file);
     source.worldFromIndex = glm::scale(glm::translate(glm::dmat4(1), format.origin),

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # A file that says that its values are labels is shown by their preset, unless something else is
 # asked for; one that does not say so is not.
-# Usage: labels_first.sh PROGRAM OIIOTOOL SCRATCH ITK
+# Usage: labels_first.sh PROGRAM OIIOTOOL SCRATCH
 set -euo pipefail
-program=$1 oiiotool=$2 scratch=$3 itk=$4
+program=$1 oiiotool=$2 scratch=$3
 rm -rf "$scratch"
 mkdir -p "$scratch"
 cd "$scratch"
@@ -40,7 +40,6 @@ printf '\353\003' | dd of=other.nii bs=1 seek=68 conv=notrunc status=none
 draw other other.nii
 same other plain || { echo "other.nii: another intent, and no ramp"; exit 1; }
 
-[[ $itk == 1 ]] || exit 0
 header='NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n'
 printf "$header\n" | cat - engine_16x16x16_uint8.raw >plain.nrrd
 printf "${header}Segment0_ID:=Segment_1\n\n" | cat - engine_16x16x16_uint8.raw >labels.seg.nrrd
@@ -50,3 +49,24 @@ printf "$header\n" | cat - <(printf '\nSegment0_ID:=') engine_16x16x16_uint8.raw
     head -c "$(stat -c %s plain.nrrd)" >data.nrrd
 draw data data.nrrd
 ! same data preset || { echo "data.nrrd: got labels"; exit 1; }
+
+# Names and colours of segments are those of the picture and its legend, through conversions and
+# delta grids, and come back as 3D Slicer wrote them.
+segments='Segment0_ID:=a\nSegment0_Name:=metal, cast\nSegment0_LabelValue:=119\nSegment0_Color:=1 0 0\n'
+printf "${header}$segments\n" | cat - engine_16x16x16_uint8.raw >named.seg.nrrd
+"$program" convert named.seg.nrrd named.vdb -q -q
+"$program" delta named.vdb named_delta.vdb -q -q
+"$program" restore named_delta.vdb again.vdb -q -q
+"$program" convert again.vdb again.seg.nrrd -q -q
+draw named named.seg.nrrd
+! same named preset || { echo "named.seg.nrrd: got the preset's colours; expected its own"; exit 1; }
+for file in named.vdb named_delta.vdb again.vdb again.seg.nrrd; do
+    draw other $file
+    same named other || { echo "$file: got another picture than of named.seg.nrrd"; exit 1; }
+    text=$("$program" info $file -q)
+    [[ $text == *"119 metal, cast"* ]] || { echo "$file: info names no label: $text"; exit 1; }
+done
+text=$(head -c 2000 again.seg.nrrd | tr -d '\0')
+for line in 'Segment0_Name:=metal, cast' 'Segment0_LabelValue:=119' 'Segment0_Color:=1 0 0'; do
+    [[ $text == *"$line"* ]] || { echo "again.seg.nrrd: no line $line"; exit 1; }
+done
