@@ -143,6 +143,7 @@ TreeGrid gridOf(const Volume& volume) {
         // The volume's place counts, which may be in another unit.
         if (matrixOf(*grid.map) != volume.worldFromIndex) grid.map = makeMap(volume.worldFromIndex);
         if (!volume.lengthUnit.empty()) grid.metadata.insert(kLengthUnitKey, volume.lengthUnit);
+        if (volume.labels) grid.metadata.insert(kLabelsKey, labelText(*volume.labels));
         return grid;
     }
     const std::string type = gridTypeOf(volume);

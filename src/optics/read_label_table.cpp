@@ -145,6 +145,14 @@ std::map<int, std::string> readLabelNames(const std::filesystem::path& file) {
     return names;
 }
 
+LabelList readLabelList(const std::filesystem::path& file) {
+    LabelList list;
+    for (const auto& [label, line] : readLines(file).lines) {
+        if (label != 0) list.entries.push_back({label, line.name, line.look.rgb});
+    }
+    return list;
+}
+
 TransferFunction readLabelTable(const std::filesystem::path& file, const Listener& listener) {
     const LabelLines table = readLines(file);
     std::vector<LabelLook> rising;

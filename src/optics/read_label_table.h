@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "deltasplat/ingest/label_list.h"
 #include "optics/label_function.h"
 
 namespace deltasplat {
@@ -16,6 +17,10 @@ namespace deltasplat {
 /// that is listed twice the last line counts.
 /// @throw Error(kInput) naming file and line, if it is missing or malformed
 TransferFunction readLabelTable(const std::filesystem::path& file, const Listener& listener = {});
+
+/// Returns the names and colours of such a table. 0 is what has no label, and left out.
+/// @throw as readLabelTable
+LabelList readLabelList(const std::filesystem::path& file);
 
 /// Returns what such a table calls its labels; some may be "".
 /// @throw as readLabelTable

@@ -95,6 +95,7 @@ deltasplat_script_test(exr exr.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}
 deltasplat_script_test(tone tone.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/tone)
 deltasplat_script_test(labels_first labels_first.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/labels_first)
+deltasplat_script_test(units units.sh ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/units)
 deltasplat_script_test(annotations annotations.sh
     ARGS ${tool} ${DELTASPLAT_OIIOTOOL} ${scratch}/annotations)
 deltasplat_script_test(identity.simd identity.sh

@@ -9,6 +9,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "listener_part.h"
+#include "optics/read_label_table.h"
 #include "options/input_options.h"
 #include "subcommands.h"
 
@@ -28,6 +29,7 @@ struct ConvertCommand {
     FrameChoice frames;
     ReadOptions read;
     WriteOptions write;
+    std::filesystem::path labels;  // empty: those that the input has
 };
 
 // "auto", "none" or a number.
@@ -68,6 +70,10 @@ void declareOptions(CLI::App& app, ConvertCommand& command) {
                     "background; auto: the background that a .vdb has, what info\n"
                     "guesses for other inputs (default none: every voxel stays as\n"
                     "active as it was)");
+    output.addValue("--labels", "TABLE", command.labels, anyText(),
+                    "Names and colours of labels, a table of 3D Slicer or ITK-SNAP, to\n"
+                    "keep in a .vdb, or in a .nrrd as segments of 3D Slicer (default:\n"
+                    "those that the input has)");
     addConversionOptions(app, "sizes, largest error, seconds", command.files, command.frames);
     addInputOptions(app, command.read);
 }
@@ -108,9 +114,15 @@ ConversionStats convertFile(const CLI::App& app, const ConvertCommand& command,
     ConversionStats stats;
     warnOfUnusedOptions(app, command, files.input, listener);
     bool complete = true;
+    std::shared_ptr<const LabelList> labels;
+    if (!command.labels.empty())
+        labels = std::make_shared<const LabelList>(readLabelList(command.labels));
     std::vector<Volume> volumes =
         readInput(command, files.input, partOf(listener, 0, kReadShare), complete);
-    for (const Volume& volume : volumes) stats.add(volume, volume.codeBook.name());
+    for (Volume& volume : volumes) {
+        if (labels) volume.labels = labels;
+        stats.add(volume, volume.codeBook.name());
+    }
 
     writeConverted(files, std::move(volumes), command.write, partOf(listener, kReadShare, 1),
                    stats);

@@ -70,3 +70,14 @@ text=$(head -c 2000 again.seg.nrrd | tr -d '\0')
 for line in 'Segment0_Name:=metal, cast' 'Segment0_LabelValue:=119' 'Segment0_Color:=1 0 0'; do
     [[ $text == *"$line"* ]] || { echo "again.seg.nrrd: no line $line"; exit 1; }
 done
+
+# Names of a table go where the format has a place for them.
+printf '0 0 0 0 0 0 0 "Clear"\n119 255 0 0 1 1 1 "metal, cast"\n' >table.txt
+for file in plain.nii:snap.seg.nrrd plain.nrrd:snap.vdb; do
+    "$program" convert ${file%:*} ${file#*:} --labels table.txt -q -q
+    draw snap ${file#*:}
+    same named snap || { echo "${file#*:}: got another picture than of named.seg.nrrd"; exit 1; }
+done
+text=$("$program" convert snap.vdb snap.nii 2>&1)
+[[ $text == *"snap.nii: names and colours of labels are left out"* ]] ||
+    { echo "snap.nii: lost names without a word: $text"; exit 1; }
