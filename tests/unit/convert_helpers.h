@@ -35,7 +35,7 @@ inline Volume readKept(const std::filesystem::path& file, const std::string& gri
     ReadOptions options;
     options.keepSource = true;
     options.levelSetToFog = false;
-    options.gridName = grid;
+    if (!grid.empty()) options.gridName = grid;
     return readVolume(file, options);
 }
 

@@ -204,6 +204,8 @@ class NrrdReader {
     std::vector<std::optional<std::vector<double>>> directions() const {
         const std::string* const text = find("spacedirections");
         if (text == nullptr) return {};
+        if (spaceAxes() == 0)
+            refuse("space directions without a space", "a space or a space dimension");
         std::vector<std::optional<std::vector<double>>> vectors;
         for (std::size_t at = text->find_first_not_of(" \t"); at != std::string::npos;
              at = text->find_first_not_of(" \t", at)) {
@@ -271,8 +273,6 @@ class NrrdReader {
     void place(const std::vector<std::size_t>& axes) {
         const Space* const named = space();
         const auto vectors = directions();
-        if (!vectors.empty() && spaceAxes() == 0)
-            refuse("space directions without a space", "a space or a space dimension");
         if (vectors.empty()) {
             placeByAxes(axes);
         } else {

@@ -71,7 +71,7 @@ RawFile rawFileOf(const TextVolume& volume) {
     const bool isPlain = volume.packed && rest == wanted + volume.skipBytes &&
                          packingOf(volume.dataFile, volume.dataStart) == Packing::kNone;
     const bool isGzip = !volume.packed && !volume.atEnd && volume.dataFile != volume.header &&
-                        rest < wanted + volume.skipBytes &&
+                        rest != wanted + volume.skipBytes &&
                         packingOf(volume.dataFile, volume.dataStart) == Packing::kGzip;
     if ((volume.packed && !isPlain) || isGzip) {
         file.packing = isGzip ? Packing::kGzip : volume.packing;

@@ -52,7 +52,7 @@ draw data data.nrrd
 
 # Names and colours of segments are those of the picture and its legend, through conversions and
 # delta grids, and come back as 3D Slicer wrote them.
-segments='Segment0_ID:=a\nSegment0_Name:=metal, cast\nSegment0_LabelValue:=119\nSegment0_Color:=1 0 0\n'
+segments='Segment0_ID:=a\nSegment0_Name:=metal, cast\nSegment0_LabelValue:=115\nSegment0_Color:=1 0 0\n'
 printf "${header}$segments\n" | cat - engine_16x16x16_uint8.raw >named.seg.nrrd
 "$program" convert named.seg.nrrd named.vdb -q -q
 "$program" delta named.vdb named_delta.vdb -q -q
@@ -64,16 +64,16 @@ for file in named.vdb named_delta.vdb again.vdb again.seg.nrrd; do
     draw other $file
     same named other || { echo "$file: got another picture than of named.seg.nrrd"; exit 1; }
     text=$("$program" info $file -q)
-    [[ $text == *"119 metal, cast"* ]] || { echo "$file: info names no label: $text"; exit 1; }
+    [[ $text == *"115 metal, cast"* ]] || { echo "$file: info names no label: $text"; exit 1; }
 done
 text=$(head -c 2000 again.seg.nrrd | tr -d '\0')
-for line in 'Segment0_Name:=metal, cast' 'Segment0_LabelValue:=119' 'Segment0_Color:=1 0 0'; do
+for line in 'Segment0_Name:=metal, cast' 'Segment0_LabelValue:=115' 'Segment0_Color:=1 0 0'; do
     [[ $text == *"$line"* ]] || { echo "again.seg.nrrd: no line $line"; exit 1; }
 done
 
 # Names of a table go where the format has a place for them.
-printf '0 0 0 0 0 0 0 "Clear"\n119 255 0 0 1 1 1 "metal, cast"\n' >table.txt
-for file in plain.nii:snap.seg.nrrd plain.nrrd:snap.vdb; do
+printf '0 0 0 0 0 0 0 "Clear"\n115 255 0 0 1 1 1 "metal, cast"\n' >table.txt
+for file in plain.nrrd:snap.seg.nrrd plain.nrrd:snap.vdb; do
     "$program" convert ${file%:*} ${file#*:} --labels table.txt -q -q
     draw snap ${file#*:}
     same named snap || { echo "${file#*:}: got another picture than of named.seg.nrrd"; exit 1; }
