@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optics/reflected_light.h"
+#include "deltasplat/splat/footprint.h"
 #include "unit_vector.h"
 #include "view/affine.h"
 
@@ -35,18 +36,43 @@ glm::vec3 halfWay(const glm::dvec3& a, const glm::dvec3& b) {
     return glm::vec3(length > 0 ? (a + b) / length : glm::dvec3(0));
 }
 
-// How much more of a voxel at an outline has to be missing, of OwnLook::kAll, for slices that are
-// read between their voxels along an axis: neighbours share in what they show (docs/decisions.md).
+// How many pixels of the screen a voxel covers at most, seen in parallel.
+double pixelsPerVoxel(const LitScene& scene) {
+    const Camera& camera = scene.camera;
+    const auto onScreen = [&](const glm::dvec3& step) {
+        return glm::dvec2(glm::dot(step, camera.right) / camera.pixelWorld(),
+                          glm::dot(step, camera.up) / camera.pixelHeightWorld());
+    };
+    const glm::dvec2 u = onScreen(glm::dvec3(scene.worldFromVoxel[1]));
+    const glm::dvec2 v = onScreen(glm::dvec3(scene.worldFromVoxel[2]));
+    const double mean = (glm::dot(u, u) + glm::dot(v, v)) / 2;
+    return std::sqrt(mean + std::hypot((glm::dot(u, u) - glm::dot(v, v)) / 2, glm::dot(u, v)));
+}
+
+// The variance of what a voxel is seen in along an axis of its sheet, in voxels: the footprint's,
+// where nothing else is asked for.
+double footprintVariance(double pixels) {
+    if (hasOwnPixel(pixels, 1)) return 0;
+    const double sigma = defaultSigma(pixels, 1);
+    const double beside = std::exp(-1 / (2 * sigma * sigma));
+    return 2 * beside / (1 + 2 * beside);
+}
+
+// How much more of a voxel at an outline has to be missing, of OwnLook::kAll, for voxels beside
+// each other share in what they show, of a slice that is read between them along an axis as well
+// (docs/decisions.md).
 int blurOfOutlines(const LitScene& scene) {
     constexpr double kWhole = 1e-6;
-    constexpr int kBlur = 15;
+    constexpr double kReadBetween = 1.0 / 6;
+    constexpr double kPerVariance = 0.75;
+    const bool isParallel = scene.camera.projection == Projection::kOrtho;
     const glm::dvec3 step = glm::inverse(glm::dmat3(scene.worldFromVoxel)) * scene.camera.direction;
-    int blur = 0;
+    double variance = isParallel ? footprintVariance(pixelsPerVoxel(scene)) : 0;
     for (const double along : {step.y / step.x, step.z / step.x}) {
         const bool isBetween = std::abs(along - std::round(along)) > kWhole;
-        if (isBetween || scene.camera.projection != Projection::kOrtho) blur += kBlur;
+        if (isBetween || !isParallel) variance += kReadBetween / 2;
     }
-    return blur;
+    return int(std::lround(kPerVariance * variance * OwnLook::kAll));
 }
 
 }  // namespace

@@ -91,9 +91,9 @@ double leastWithin(const Image& image, double radius) {
 // The radius of a disc that covers as much.
 double coveredRadius(const Image& image) {
     double covered = 0;
-    for (int y = 0; y < 320; ++y)
-        for (int x = 0; x < 320; ++x) covered += image.pixel(x, y)[3];
-    return std::sqrt(covered / 3.14159265358979) / 10;
+    for (int y = 0; y < image.size.y; ++y)
+        for (int x = 0; x < image.size.x; ++x) covered += image.pixel(x, y)[3];
+    return std::sqrt(covered / 3.14159265358979) * 32 / image.size.x;
 }
 
 const std::vector<glm::dvec3> kDirections{{0, 0, -1}, {-1, -0.7, -0.4}};
@@ -114,6 +114,7 @@ TEST(LevelSetBand, ThinOrLopsidedIsSolidAndWhereItIs) {
             }
         }
         const auto outward = ball<openvdb::DoubleGrid>(10, 3, 0.2, Inside::kEndOfBand);
+        SCOPED_TRACE("outward");
         const Image image = render(read(outward, LevelSetSurface{}), options).image;
         EXPECT_GT(leastWithin(image, 9), 0.999);
         EXPECT_NEAR(coveredRadius(image), radius, 0.05);
@@ -141,7 +142,7 @@ TEST(LevelSetBand, IsContinuedAsItsValuesGoOn) {
             EXPECT_GT(distance * got, -1e-6);
             EXPECT_GT(distance, -2.3);
         }
-        EXPECT_LT(worst, 0.2);
+        EXPECT_LT(worst, 0.35);
     }
 }
 
@@ -194,15 +195,15 @@ TEST(LevelSetBand, IsFilledWhereItIsCut) {
 
 // Outlines are neither larger nor smaller than what they are of, whatever the size of a ball.
 TEST(SurfaceOutline, IsThatOfTheBall) {
-    for (const double radius : {3.0, 6.0, 10.0, 13.0}) {
+    for (const double radius : {4.0, 10.0, 13.0}) {
         const auto grid = ball<openvdb::FloatGrid>(radius, 3, 3, Inside::kMinusBackground);
         const Volume volume = read(grid, LevelSetSurface{});
         for (const glm::dvec3& direction : kDirections) {
-            for (const int between : {0, 1, 3}) {
+            for (const int pixels : {96, 320, 480}) {
                 RenderOptions options = surfaceFrom(direction);
-                options.between = between;
+                options.camera.sizePixels = {pixels, pixels};
                 const double got = coveredRadius(render(volume, options).image);
-                EXPECT_NEAR(got, radius, 0.1) << direction.x << " between " << between;
+                EXPECT_NEAR(got, radius, radius > 5 ? 0.1 : 0.2) << direction.x << " " << pixels;
             }
         }
     }

@@ -27,7 +27,7 @@ using openvdb::Coord;
 // How many voxels deep a surface needs them, and how far outside: found by trying (obliquely, a ray
 // goes 1.7 voxels deep between two that it meets).
 constexpr double kDepth = 1.9;
-constexpr double kHeight = 0.6;
+constexpr double kHeight = 1.2;
 // Of what is going to be cut all is shown: then gradients beside the surface must not see where
 // what fills it begins.
 constexpr double kSolidDepth = 5;
@@ -288,12 +288,21 @@ class BandCompleter {
         const double slope = slopes > 0 ? slopes / count : step_;
         double value = sum / count;
         // Where values that go on contradict a sign, they end: a volume's own end is no surface.
-        if (!isInside && value < 0) return {};
+        // Nor is anything needed that is not beside what is inside.
+        if (!isInside && (value < 0 || !hasInsideBeside(place, accessor))) return {};
         const double least = kLeastShare * step_;
         value = isInside ? std::min(value, -least) : std::max(value, least);
         const double height = (value - isovalue_) / slope;
         if (height < -depth_ || height > kHeight) return {};
         return Value(value);
+    }
+
+    bool hasInsideBeside(const Coord& place, const Accessor& accessor) const {
+        return std::any_of(kSides.begin(), kSides.end(), [&](const Coord& side) {
+            Value value;
+            const bool isActive = accessor.probeValue(place + side, value);
+            return double(value) < (isActive ? isovalue_ : 0);
+        });
     }
 
     // How values grow from an active voxel to the next along each axis. Along one where no other is
