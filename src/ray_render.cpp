@@ -199,6 +199,13 @@ void putTogether(const Image& found, glm::ivec2 first, Mode mode, Image& all) {
     });
 }
 
+// Widens a part to the tiles that a picture of the volume alone has: bits are those of tiles.
+PixelBox wholeTiles(const PixelBox& part, const Volume& volume, const Camera& camera) {
+    const int pixels = std::max(1, kTileLines / linesPerSide(volume, camera));
+    return {part.min / pixels * pixels,
+            glm::min((part.max + pixels - 1) / pixels * pixels, camera.sizePixels)};
+}
+
 // Follows rays through groups of voxels that lie far apart, one after the other.
 void renderFar(const FarGroups& far, const RayTask& whole, const Listener& listener,
                RenderResult& result) {
@@ -207,11 +214,12 @@ void renderFar(const FarGroups& far, const RayTask& whole, const Listener& liste
         const FarGroups::Seen seen = far.seenBy(whole.camera, order[i]);
         if (seen.isNothing()) continue;
         const Volume volume = far.volume(order[i]);
-        Image image = clearImage(seen.part.size());
+        const PixelBox part = wholeTiles(seen.part, volume, whole.camera);
+        Image image = clearImage(part.size());
         const double count = double(order.size());
-        renderTask({volume, whole.options, whole.camera, seen.part, whole.whole, true},
+        renderTask({volume, whole.options, whole.camera, part, whole.whole, true},
                    partOf(listener, double(i) / count, double(i + 1) / count), image, result.stats);
-        putTogether(image, seen.part.min, whole.options.mode, result.image);
+        putTogether(image, part.min, whole.options.mode, result.image);
     }
     far.warnOfDots(whole.camera, listener);
     if (showsSums(whole.options.mode)) return;

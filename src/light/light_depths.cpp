@@ -73,8 +73,7 @@ void Sweeps::add(const Light& light, const glm::dvec3& placeIndex) {
                               MetClasses{extinctions_.data(), float(way.sliceWorld), most_});
         };
         const LightSweep all = sweepOf(along(way.sliceAxis));
-        // As a plane of as many floats takes.
-        constexpr double kLargePlane = 1 << 26;
+        constexpr double kLargePlane = 1 << 24;  // bytes
         if (all.bytes(0, all.rows()) <= kLargePlane) {
             sweeps_.emplace_back(all);
         } else {

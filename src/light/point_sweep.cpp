@@ -56,7 +56,7 @@ NodesOnBlock nodesOn(double first, double distance, double nodes, std::int64_t l
 }
 
 // As many floats as a plane may have before what is not read of it is left out.
-constexpr double kLargePlane = 1 << 24;
+constexpr double kLargePlane = 1 << 22;
 
 // Rows and columns of nodes, both ends inclusive.
 struct NodeBox {

@@ -407,7 +407,11 @@ void decode(typename Words::DeltaTree& deltas, const DeltaHeader& header, const 
     for (std::size_t begin = 0; begin + 1 < columns.size(); begin += kPortion) {
         const std::size_t count = std::min(kPortion, columns.size() - 1 - begin);
         const int blocksPerColumn = header.keyInterval / 8;
-        requireClaimedMemory(where, double(count) * blocksPerColumn * sizeof(Block<Words>));
+        double mostBlocks = double(count) * blocksPerColumn;
+        // Of those without deltas each has a voxel that is active.
+        if (!header.restActive && header.inactiveValues.empty())
+            mostBlocks = std::min(mostBlocks, double(header.active) + double(leaves.size()));
+        requireClaimedMemory(where, mostBlocks * sizeof(Block<Words>));
         std::vector<std::vector<Block<Words>>> blocks(count);
         parallelForChunks(count, [&](std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i) {
