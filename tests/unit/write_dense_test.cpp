@@ -172,6 +172,7 @@ glm::dvec3 placeOf(const Volume& volume, const glm::ivec3& voxel) {
 // Wherever a volume goes, its voxels stay where they are in the world, and lengths whose unit is
 // known stay known.
 TEST(WriteDense, UnitsComeBack) {
+    const TempFolder outer;  // of what volumes are made of
     const std::vector<std::uint8_t> values = pattern<std::uint8_t>(kDims, 0, 9);
     for (const std::string space : {"", "RAS", "LPS"}) {
         for (const std::string unit : {"", "mm", "um", "nm", "m", "in"}) {
@@ -211,6 +212,7 @@ TEST(WriteDense, UnitsComeBack) {
 // Names and colours of labels survive wherever a format has a place for them, and that values are
 // labels in all that have a header for it.
 TEST(WriteDense, LabelsComeBack) {
+    const TempFolder outer;
     const std::vector<std::uint8_t> values = pattern<std::uint8_t>(kDims, 0, 9);
     const std::vector<LabelEntry> named{{3, "liver, left lobe", glm::dvec3(0.5, 0.25, 1)},
                                         {9, "bone \\n", {}}};
@@ -238,7 +240,6 @@ TEST(WriteDense, LabelsComeBack) {
             }
         }
     }
-    const TempFolder folder;
     Volume volume = rawVolume(values, kDims, "uint8");
     volume.labels = std::make_shared<const LabelList>(LabelList{named});
     EXPECT_EQ(write("out.nii", volume).notes.back(),
