@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the odd files that the command-line tests are given, into the current folder.
+#include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>
 #include <openvdb/points/PointDataGrid.h>
 #include <openvdb/tools/LevelSetSphere.h>
@@ -13,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include <openvdb/openvdb.h>
 #include "make_several.h"
 
 namespace {

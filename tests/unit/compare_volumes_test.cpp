@@ -591,7 +591,7 @@ TEST(CompareVolumes, UnsignedIntegersAreExact) {
         grid->tree().setValueOn(Coord(1, 2, 3), std::int64_t(value));
         Volume volume = volumeOf<openvdb::Int64Grid>(grid);
         SourceGrid source = *volume.source;
-        source.grid.metadata.insert(kSourceTypeKey, "uint64");
+        source.grid.metadata.insert(kSourceTypeKey, std::string("uint64"));
         volume.source = std::make_shared<const SourceGrid>(std::move(source));
         return volume;
     };
