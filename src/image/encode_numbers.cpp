@@ -33,7 +33,8 @@ std::string sizesText(glm::ivec2 size) {
 glm::dmat4 placeOf(const ImageFileOptions& options, const PixelBox& part) {
     glm::dmat4 matrix = options.worldFromPixel.value_or(glm::dmat4(1));
     matrix[3] = matrix * glm::dvec4(part.min, 0, 1);
-    return matrix;
+    // Adding 0 keeps -0, which is no other place, out of the file.
+    return matrix + 0.0;
 }
 
 std::string nrrdHeader(const ImageFileOptions& options, const PixelBox& part) {
