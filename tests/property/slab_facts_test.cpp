@@ -271,8 +271,7 @@ TEST(SlabFacts, WhatIsOfAnotherPictureIsRefused) {
                          "facts.json: got something else; expected facts of a picture's slabs", [] {
                              readPart({1, 1, 2});
                          });
-    testing::expectError(ErrorCode::kInput,
-                         "none.json: got a file that cannot be opened; expected a readable file",
+    testing::expectError(ErrorCode::kInput, "none.json: got no such file; expected a readable file",
                          [] {
                              readSlabVolume(kDeltas, {}, "none.json", kOptions, {1, 1, 2});
                          });
