@@ -162,17 +162,19 @@ TEST(WriteDense, ChainsOfFormatsKeepTheAffine) {
     }
 }
 
-// Returns where a voxel lies, in millimetres left, back and up of the patient or in its own space.
-glm::dvec3 placeOf(const Volume& volume, const glm::ivec3& voxel) {
+// Returns where a voxel lies, in millimetres left, back and up of the patient or, where there was
+// none, in its own space, which NIfTI calls RAS.
+glm::dvec3 placeOf(const Volume& volume, const glm::ivec3& voxel, bool patient) {
     const glm::dvec3 place(volume.worldFromIndex * glm::dvec4(voxel, 1));
     const double unit = volume.lengthUnit.empty() ? 1 : millimetresIn(volume.lengthUnit);
-    return unit * (volume.space == "RAS" ? glm::dvec3(-place.x, -place.y, place.z) : place);
+    return unit *
+           (patient && volume.space == "RAS" ? glm::dvec3(-place.x, -place.y, place.z) : place);
 }
 
 // Wherever a volume goes, its voxels stay where they are in the world, and lengths whose unit is
 // known stay known.
 TEST(WriteDense, UnitsComeBack) {
-    const TempFolder outer;  // of what volumes are made of
+    const TempFolder folder;
     const std::vector<std::uint8_t> values = pattern<std::uint8_t>(kDims, 0, 9);
     for (const std::string space : {"", "RAS", "LPS"}) {
         for (const std::string unit : {"", "mm", "um", "nm", "m", "in"}) {
@@ -182,7 +184,6 @@ TEST(WriteDense, UnitsComeBack) {
             volume.lengthUnit = unit;
             for (const std::string extension : {".vdb", ".nii", ".nrrd", ".nhdr", ".mhd", ".mha"}) {
                 SCOPED_TRACE(space + " " + unit + " " + extension);
-                const TempFolder folder;
                 write("a" + extension, volume);
                 // Through a grid, and its delta grids.
                 write("b.vdb", readKept("a" + extension));
@@ -198,7 +199,9 @@ TEST(WriteDense, UnitsComeBack) {
                         EXPECT_EQ(back.lengthUnit, unit);
                     }
                     for (const glm::ivec3 voxel : {glm::ivec3(0), glm::ivec3(18, 16, 9)}) {
-                        const glm::dvec3 place = placeOf(back, voxel), was = placeOf(volume, voxel);
+                        const bool patient = !space.empty();
+                        const glm::dvec3 place = placeOf(back, voxel, patient);
+                        const glm::dvec3 was = placeOf(volume, voxel, patient);
                         const double size = glm::length(was);
                         for (int axis = 0; axis < 3; ++axis)
                             EXPECT_NEAR(place[axis], was[axis], 1e-6 * size) << file;
@@ -212,7 +215,7 @@ TEST(WriteDense, UnitsComeBack) {
 // Names and colours of labels survive wherever a format has a place for them, and that values are
 // labels in all that have a header for it.
 TEST(WriteDense, LabelsComeBack) {
-    const TempFolder outer;
+    const TempFolder folder;
     const std::vector<std::uint8_t> values = pattern<std::uint8_t>(kDims, 0, 9);
     const std::vector<LabelEntry> named{{3, "liver, left lobe", glm::dvec3(0.5, 0.25, 1)},
                                         {9, "bone \\n", {}}};
@@ -222,7 +225,6 @@ TEST(WriteDense, LabelsComeBack) {
         volume.labels = std::make_shared<const LabelList>(LabelList{entries});
         for (const std::string extension : {".vdb", ".nrrd", ".nii", ".mha"}) {
             SCOPED_TRACE(extension);
-            const TempFolder folder;
             const bool holdsNames = extension == ".vdb" || extension == ".nrrd";
             const WriteReport report = write("a" + extension, volume);
             EXPECT_EQ(report.lossless, holdsNames || entries.empty());
