@@ -323,6 +323,8 @@ void SlabRenderer::renderPiece(const Piece& piece, Splatter& splatter) {
 // Returns the seconds that compositing took.
 double SlabRenderer::renderSlab(const SeenSlab& seen, const Strip& strip, const PlaneBox& box,
                                 Splatter& splatter, Layer& layer) {
+    // However many slices it has.
+    if (seen.slab->seenWords == 0) return 0;
     const SheetLayout layout = layoutOf(strip, seen);
     if (box.empty() || layout.blocks.x == 0 || layout.blocks.y == 0) return 0;
     SlabCover cover(input_.plane, walkOf(seen).last, strip.layers->covered(), layer);
