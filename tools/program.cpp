@@ -157,8 +157,10 @@ void refuseEmptyValues(const CLI::App& program, const std::vector<std::string>& 
                                  ? i + 1 < arguments.size() && arguments[i + 1].empty()
                                  : sign + 1 == argument.size();
         const CLI::Option* const option = isEmpty ? app.get_option_no_throw(name) : nullptr;
-        if (option != nullptr && option->get_items_expected_max() > 0)
-            throw nothingGiven(app, name, *option);
+        if (option == nullptr || option->get_items_expected_max() == 0) continue;
+        // A grid may have no name.
+        const bool mayBeEmpty = sign == std::string::npos && name == "--grid";
+        if (!mayBeEmpty) throw nothingGiven(app, name, *option);
     }
 }
 

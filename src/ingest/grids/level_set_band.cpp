@@ -119,13 +119,8 @@ class BandCompleter {
             return 0;
         step_ = largestStep();
         if (!(step_ > 0)) return 0;
-        std::uint64_t added = 0;
-        for (int layer = 0; layer < kMostLayers; ++layer) {
-            const std::uint64_t count = addLayer();
-            if (count == 0) break;
-            added += count;
-        }
-        return added;
+        for (int layer = 0; layer < kMostLayers && addLayer(); ++layer) continue;
+        return beside_;
     }
 
     // Makes all that is inside active.
@@ -226,7 +221,8 @@ class BandCompleter {
         return !missing.empty();
     }
 
-    std::uint64_t addLayer() {
+    // Returns whether there was anything to add.
+    bool addLayer() {
         findNear();
         if (addLeaves()) findNear();
         std::vector<std::vector<Added>> added(leaves_.size());
@@ -234,12 +230,17 @@ class BandCompleter {
             const Accessor accessor(tree_);
             for (std::size_t i = begin; i < end; ++i) added[i] = addedTo(i, accessor);
         });
-        std::uint64_t count = 0;
+        bool isAnyAdded = false;
+        // What fills it is not remarkable.
+        const double deepest = depth_ > kDepth ? isovalue_ - kDepth * step_ : -INFINITY;
         for (std::size_t i = 0; i < leaves_.size(); ++i) {
-            for (const Added& one : added[i]) leaves_[i]->setValueOn(one.place, one.value);
-            count += added[i].size();
+            for (const Added& one : added[i]) {
+                leaves_[i]->setValueOn(one.place, one.value);
+                if (double(one.value) >= deepest) ++beside_;
+            }
+            isAnyAdded = isAnyAdded || !added[i].empty();
         }
-        return count;
+        return isAnyAdded;
     }
 
     // Returns what becomes active in a leaf.
@@ -339,6 +340,7 @@ class BandCompleter {
     double isovalue_;
     double depth_;
     double step_ = 0;
+    std::uint64_t beside_ = 0;  // of those added, which any surface needs
     std::vector<Leaf*> leaves_;
     std::vector<Near> near_;  // of each
 };
