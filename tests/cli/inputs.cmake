@@ -107,8 +107,6 @@ deltasplat_cli_test(input.kind.list ARGS info --list other_type.vdb frustum_firs
   heat ")
 deltasplat_cli_test(input.kind.batch EXIT 3 ARGS render "other_*.vdb" -o "out/{grid}.exr"
     STDERR_MATCHES ".*density.*of type uint8.*" CREATES out)
-deltasplat_cli_test(input.fine.unnamed ARGS info unnamed.vdb --grid ""
-    STDOUT_MATCHES "range +3 to 3")
 deltasplat_cli_test(input.fine.long_name ARGS info --list long_name.vdb
     STDOUT_MATCHES "n  float  fog volume  [^
 ]*

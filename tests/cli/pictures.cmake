@@ -48,6 +48,7 @@ deltasplat_script_test(interrupt.write interrupt_write.sh ARGS ${tool} ${scratch
 deltasplat_script_test(shared_output shared_output.sh ARGS ${tool} ${scratch}/shared_output)
 deltasplat_script_test(killed killed.sh ARGS ${tool} ${scratch}/killed)
 deltasplat_script_test(few_threads few_threads.sh ARGS ${tool} ${DELTASPLAT_FIXTURES}/frustum.vdb)
+deltasplat_script_test(unnamed_grid unnamed_grid.sh ARGS ${tool} ${DELTASPLAT_FIXTURES}/unnamed.vdb)
 set_tests_properties(cli.few_threads PROPERTIES SKIP_RETURN_CODE 77 FIXTURES_REQUIRED cli_files)
 deltasplat_script_test(inputs_kept inputs_kept.sh
     ARGS ${tool} ${scratch}/inputs_kept $<BOOL:${DELTASPLAT_ITK}>)

@@ -158,8 +158,7 @@ void requireScalars(const DeltaCommand& command, const std::filesystem::path& in
     const bool mayHoldOthers = isVdbName(input) && !command.read.gridName;
     if (command.scalarsAlone || !mayHoldOthers) return;
     const GridList grids = listGrids(input);
-    if (!grids.scalar.empty() && !grids.others.empty())
-        refuseOthers(input, nameList(grids.others));
+    if (!grids.scalar.empty() && !grids.others.empty()) refuseOthers(input, nameList(grids.others));
 }
 
 ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
