@@ -52,7 +52,7 @@ deltasplat_cli_test(delta.undefined EXIT 1 ARGS delta cache.vdb d.vdb
     STDERR "deltasplat: warning: cache.vdb: left out phi_obstacle (level set with NaN or infinite values)
 deltasplat: cache.vdb: got phi_obstacle (level set with NaN or infinite values), which no delta grid holds; expected scalar grids alone (--scalars-only leaves out others)")
 deltasplat_cli_test(delta.vectors_alone EXIT 3 ARGS delta vectors.vdb d.vdb
-    STDERR "deltasplat: vectors.vdb: got only velocity (vec3s); expected a scalar grid (float, double, int32, int64, bool or mask)")
+    STDERR "deltasplat: vectors.vdb: got only velocity (vec3s); expected a scalar grid (float, double, half, int32, int64, bool or mask)")
 deltasplat_cli_test(delta.one_beside_vectors ARGS delta mixed.vdb d.vdb --grid density CREATES d.vdb)
 
 deltasplat_cli_test(delta.usage.extension EXIT 2 ARGS delta ${cube} d.nrrd

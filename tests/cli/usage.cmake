@@ -472,11 +472,13 @@ deltasplat_refusal(c_arm_and_lens "--fov: got it and --sid; expected the camera 
     ${c_arm} --detector 40x30 --fov 20)
 foreach(mode composite xray mip min average)
     deltasplat_cli_test(c_arm_${mode} CREATES out.exr
-        ARGS render ${cube} -o out.exr ${c_arm} --detector 40x30 --mode ${mode})
+        ARGS render ${cube} -o out.exr ${c_arm} --detector 40x30 --mode ${mode}
+        STDERR "deltasplat: warning: cube_8x8x8_uint8.raw: names no unit of length; --sid takes its lengths for millimetres")
 endforeach()
 deltasplat_cli_test(detector_within CREATES out.exr
     ARGS render ${cube} -o out.exr --sid 100 --sdd 101 --detector 40x40
-    STDERR "deltasplat: warning: --sdd: the volume reaches 2.5 beyond the detector, and counts there as well")
+    STDERR "deltasplat: warning: cube_8x8x8_uint8.raw: names no unit of length; --sid takes its lengths for millimetres
+deltasplat: warning: --sdd: the volume reaches 2.5 beyond the detector, and counts there as well")
 deltasplat_cli_test(perspective CREATES out.exr
     ARGS render ${cube} -o out.exr --projection perspective --focal 35 --aperture 24 --distance 40)
 deltasplat_cli_test(distance_of_parallel CREATES out.exr
@@ -547,7 +549,7 @@ foreach(option spacing=1,1,2 origin=1,1,1)
 endforeach()
 deltasplat_cli_test(used.both ARGS info ball.vdb ${cube} --grid density --spacing 1,1,2
     STDOUT_MATCHES "voxel size +1 x 1 x 2")
-deltasplat_unused(bits --bits "on an .exr"
+deltasplat_unused(bits --bits "on an .exr or a picture of numbers"
     ARGS render ${cube} -o out.exr --size 8x8 --bits 16 CREATES out.exr)
 foreach(option ocio=config.ocio working-space=lin_srgb)
     string(REGEX REPLACE "=.*" "" name ${option})
@@ -583,7 +585,7 @@ foreach(option light=1,0,0 ambient=0.1 diffuse=1 specular=0.4 shininess=3)
 endforeach()
 deltasplat_unused(window_composite --window "with --mode composite" CREATES out.png
     ARGS render ${cube} -o out.png --size 8x8 --window 0,1)
-deltasplat_unused(window_exr --window "on an .exr, which holds the values themselves" CREATES out.exr
+deltasplat_unused(window_exr --window "on an .exr or a picture of numbers, which hold the values themselves" CREATES out.exr
     ARGS render ${cube} -o out.exr --size 8x8 --mode mip --window 0,1)
 deltasplat_unused(window_tf --window "with --tf, whose colours values get" CREATES out.png
     ARGS render ${cube} -o out.png --size 8x8 --mode mip --tf grey --window 0,1)
@@ -601,7 +603,7 @@ foreach(mode xray mip)
         deltasplat_unused(${mode}_${name} --${name} "with --mode ${mode}" CREATES out.exr
             ARGS render ${cube} -o out.exr --size 8x8 --mode ${mode} --${option})
     endforeach()
-    deltasplat_unused(${mode}_background --background "on an .exr with --mode ${mode}"
+    deltasplat_unused(${mode}_background --background "on an .exr or numbers with --mode ${mode}"
         CREATES out.exr
         ARGS render ${cube} -o out.exr --size 8x8 --mode ${mode} --background 1,1,1)
     deltasplat_cli_test(used.${mode}_background CREATES out.png

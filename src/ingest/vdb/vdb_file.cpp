@@ -319,6 +319,7 @@ void VdbFile::findOwners() {
 }
 
 const VdbGrid& VdbFile::ownerOf(const VdbGrid& grid) const {
+    if (grid.parentName.empty()) return grid;
     if (grid.owner) return grids_[*grid.owner];
     throw Error(ErrorCode::kInput, gotExpected(file_.string(),
                                                "grid \"" + grid.name +
