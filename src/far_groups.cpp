@@ -29,6 +29,10 @@
 namespace deltasplat {
 namespace {
 
+double arcSine(double x) {
+    return portable::atan2(x, std::sqrt(1 - x * x));
+}
+
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // What a box of blocks costs to be drawn, in blocks: its three faces are sheets and layers, and
@@ -379,7 +383,7 @@ FarGroups::Seen FarGroups::seenBy(const Camera& camera, std::size_t number) cons
         constexpr double kNear = 1.5;
         if (!(distance > kNear * radius)) return all;
         const double pixelsPerRadian = size.x / (2 * std::numbers::pi);
-        const double angle = std::asin(radius / distance);
+        const double angle = arcSine(radius / distance);
         const glm::dvec2 at = camera.pixelFromWorld(middle);
         const double rows = angle * pixelsPerRadian;
         const double latitude = std::abs(0.5 * size.y - at.y) / pixelsPerRadian;
@@ -388,7 +392,8 @@ FarGroups::Seen FarGroups::seenBy(const Camera& camera, std::size_t number) cons
         glm::dvec2 high(size.x, at.y + rows);
         if (latitude + angle < 0.49 * std::numbers::pi) {
             const double columns =
-                pixelsPerRadian * std::asin(std::min(1.0, std::sin(angle) / std::cos(latitude)));
+                pixelsPerRadian *
+                arcSine(std::min(1.0, portable::sin(angle) / portable::cos(latitude)));
             // What lies where left and right meet is seen at both.
             constexpr double kSeam = 4;
             if (at.x - columns > kSeam && at.x + columns < size.x - kSeam) {

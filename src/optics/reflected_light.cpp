@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optics/reflected_light.h"
 #include "deltasplat/splat/footprint.h"
+#include "portable_math.h"
 #include "unit_vector.h"
 #include "view/affine.h"
 
@@ -46,7 +47,7 @@ double pixelsPerVoxel(const LitScene& scene) {
     const glm::dvec2 u = onScreen(glm::dvec3(scene.worldFromVoxel[1]));
     const glm::dvec2 v = onScreen(glm::dvec3(scene.worldFromVoxel[2]));
     const double mean = (glm::dot(u, u) + glm::dot(v, v)) / 2;
-    return std::sqrt(mean + std::hypot((glm::dot(u, u) - glm::dot(v, v)) / 2, glm::dot(u, v)));
+    return std::sqrt(mean + portable::hypot((glm::dot(u, u) - glm::dot(v, v)) / 2, glm::dot(u, v)));
 }
 
 // The variance of what a voxel is seen in along an axis of its sheet, in voxels: the footprint's,
@@ -54,7 +55,7 @@ double pixelsPerVoxel(const LitScene& scene) {
 double footprintVariance(double pixels) {
     if (hasOwnPixel(pixels, 1)) return 0;
     const double sigma = defaultSigma(pixels, 1);
-    const double beside = std::exp(-1 / (2 * sigma * sigma));
+    const double beside = portable::exp(-1 / (2 * sigma * sigma));
     return 2 * beside / (1 + 2 * beside);
 }
 
