@@ -276,12 +276,12 @@ class BandCompleter {
                                  const Accessor& accessor) const {
         double sum = 0, slopes = 0;
         int count = 0;
-        for (std::size_t side = 0; side < kSides.size(); ++side) {
-            const Coord from = place + kSides[side];
+        for (const Coord& side : kSides) {
+            const Coord from = place + side;
             Value value;
             if (!accessor.probeValue(from, value) || !std::isfinite(double(value))) continue;
             const openvdb::Vec3d gradient = gradientAt(from, double(value), accessor);
-            sum += double(value) - gradient.dot(kSides[side].asVec3d());
+            sum += double(value) - gradient.dot(side.asVec3d());
             slopes += gradient.length();
             ++count;
         }

@@ -9,7 +9,7 @@
 // OpenVDB's trees of the usual values are generated once, in tree_types_*.cpp: a file that includes
 // this compiles in half the time. The root stays out, because a member of OpenVDB 10's that nobody
 // calls does not compile; such a member of leaves is replaced.
-
+// NOLINTBEGIN(bugprone-macro-parentheses): types in template arguments
 #define DELTASPLAT_LEAF_TEXT(T) \
     template <>                 \
     std::string openvdb::tree::LeafNode<T, 3>::str() const
@@ -25,7 +25,7 @@
     INSTANCE class openvdb::Grid<                                                           \
         openvdb::tree::Tree<openvdb::tree::RootNode<openvdb::tree::InternalNode<            \
             openvdb::tree::InternalNode<openvdb::tree::LeafNode<T, 3>, 4>, 5>>>>;
-
+// NOLINTEND(bugprone-macro-parentheses)
 DELTASPLAT_LEAF_TEXT(float);
 DELTASPLAT_LEAF_TEXT(double);
 DELTASPLAT_LEAF_TEXT(std::int32_t);
