@@ -55,7 +55,7 @@ foreach(mode xray mip)
     file(READ ${SCRATCH}/stats.json stats)
     expect_keys("${stats}" "" "method;mode;voxels;visible;deltas;stamps;slices;slabs;slice_axis;\
 between;joined;parts;resolution;footprint;seconds;peak_bytes;threads;simd;tolerance;tolerance_value;error_bound;\
-world_box;origin;directions;space;target;frame_width;camera")
+world_box;origin;directions;space;length_unit;target;frame_width;camera")
     expect_keys("${stats}" seconds "read;prepare;splat;composite;warp;write;render;total")
     expect_keys("${stats}" error_bound "color;alpha")
     expect_value("${stats}" ${mode} mode)
