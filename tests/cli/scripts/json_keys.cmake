@@ -69,7 +69,7 @@ expect_value("${stats}" 960 visible)
 run(info slab_12x10x8_uint8.raw --json -q)
 expect_keys("${text}" "" files)
 expect_keys("${text}" "files;0" "file;emission_grid;color_grid;grids")
-expect_keys("${text}" "files;0;grids;0" "name;type;class;series;description;volume;volumes;dims;\
+expect_keys("${text}" "files;0;grids;0" "name;type;class;series;description;labels;length_unit;volume;volumes;dims;\
 bbox;voxel_size;active;range;background;background_guess;background_voxels;percentiles;histogram;\
 code_book;code_error;delta;delta_estimate;axes;transfer_function;stamps;world_box;origin;directions;space;target;frame_width")
 expect_keys("${text}" "files;0;grids;0;delta_estimate" "plain_bytes;delta_bytes;voxel_bytes;\
