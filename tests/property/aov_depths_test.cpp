@@ -345,7 +345,7 @@ TEST(AovDepths, ofASurfaceAreWhereItIsMet) {
                     EXPECT_LT(channels.at("ZBack")[i], depth + 6 * voxel);
                     const glm::dvec3 place(channels.at("P.X")[i], channels.at("P.Y")[i],
                                            channels.at("P.Z")[i]);
-                    EXPECT_LT(std::abs(glm::length(place) - r), (between == 0 ? 0.5 : 0.2) * voxel);
+                    EXPECT_LT(std::abs(glm::length(place) - r), 0.5 * voxel);
                     EXPECT_LT(glm::length(glm::cross(place - sight.from, sight.way)), 1e-5);
                 }
             }
