@@ -110,8 +110,8 @@ class RayPicture {
         const int width = n * (last.x - first.x);
         for (int y = first.y; y < last.y; ++y) {
             for (int x = first.x; x < last.x; ++x)
-                paint(tile, std::size_t(n * (y - first.y) * width + n * (x - first.x)), width,
-                      image.pixel(x, y));
+                paint(tile, std::size_t(n) * std::size_t((y - first.y) * width + x - first.x),
+                      width, image.pixel(x, y));
         }
     }
 
