@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+
 #include <zlib.h>
+#include <random>
 
 #include "unit/format_helpers.h"
 
@@ -388,6 +390,28 @@ TEST(ReadMeta, PackedByContent) {
     }
 }
 
+// What is said to be packed, and begins so, is not read as plain values that are as long.
+TEST(ReadMeta, PackedAsLongAsPlain) {
+    const TempFolder folder;
+    Meta meta;
+    meta.packed = "True";
+    meta.type = "MET_UCHAR";
+    // Noise, and as many equal bytes as save what packing adds.
+    std::string values;
+    std::minstd_rand random(5);
+    for (int i = 0; i < 200; ++i) values += char(random() % 256);
+    while (packed(values).size() != values.size()) {
+        ASSERT_LT(values.size(), 400u);
+        values += '\7';
+    }
+    meta.sizes = std::to_string(values.size()) + " 1 1";
+    writeBytes("a.mha", meta.text() + packed(values));
+    const std::vector<double> got = valuesOf(readVolume("a.mha"));
+    ASSERT_EQ(got.size(), values.size());
+    for (std::size_t i = 0; i < values.size(); ++i)
+        ASSERT_EQ(got[i], double(static_cast<unsigned char>(values[i]))) << i;
+}
+
 TEST(ReadMeta, ASliceHasAThickness) {
     const TempFolder folder;
     Meta meta;
@@ -429,6 +453,11 @@ TEST(ReadMetaError, Data) {
     meta = {};
     meta.more = "HeaderSize = 5\n";
     expectRefusedMeta("got HeaderSize 5 for data in the same file; expected 0", meta, data());
+    meta.more = "HeaderSize = -1\n";
+    meta.packed = "True";
+    expectRefusedMeta(
+        "got HeaderSize -1 for values that are packed or text; expected a number from 0 on", meta,
+        packed(data()));
 }
 
 TEST(ReadMetaError, PackedData) {

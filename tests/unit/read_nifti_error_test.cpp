@@ -47,8 +47,11 @@ TEST(ReadNiftiError, PairOfFiles) {
     NiftiFile file = sample();
     file.magic = "ni1";
     writeBytes("a.nii", file.bytes());
-    expectRefused("a.nii: got no .img file beside it; expected both files of a NIfTI pair",
-                  "a.nii");
+    writeBytes("a.img", file.data);
+    expectRefused(
+        "a.nii: got the header of a pair, whose values are in another file; expected "
+        "such a header in a file named .hdr",
+        "a.nii");
     writeBytes("b.hdr", file.bytes().substr(0, 348));
     expectRefused("b.hdr: got no .img file beside it; expected both files of a NIfTI pair",
                   "b.hdr");

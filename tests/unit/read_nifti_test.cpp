@@ -190,6 +190,23 @@ TEST(ReadNifti, WithoutQformAndSform) {
                                        "known, not where the volume lies or which side is left"});
 }
 
+// Sizes below 0 mirror nothing: a quaternion and a matrix do.
+TEST(ReadNifti, SizesBelowZero) {
+    const TempFolder folder;
+    NiftiFile file = sample();
+    file.sformCode = 0;
+    for (const int qform : {0, 1}) {
+        file.qformCode = qform;
+        file.pixelSizes = {1, 2, 3, 4, 1, 1, 1, 1};
+        const Volume plain = read(file);
+        file.pixelSizes = {1, -2, 3, -4, 1, 1, 1, 1};
+        Warnings warnings;
+        EXPECT_EQ(read(file, warnings.listener()).worldFromIndex, plain.worldFromIndex);
+        EXPECT_EQ(warnings.lines.front(),
+                  "a.nii: a voxel size below 0 is taken as if it were positive");
+    }
+}
+
 // A patient's space is in millimetres; without one, lengths are what the file says.
 TEST(ReadNifti, Units) {
     const TempFolder folder;
@@ -326,6 +343,9 @@ TEST(ReadNifti, Pairs) {
             EXPECT_EQ(volume.space, "RAS");
         }
     }
+    // The file that is named, and no other of the same name.
+    writeGzip("a.img.gz", bytesOf(ramp<std::int16_t>(24, 3)));
+    EXPECT_EQ(valuesOf(readVolume("a.img.gz")), ramp<double>(24, 3));
     // One piece, whatever it is called.
     writeBytes("d.hdr", sample().bytes());
     EXPECT_EQ(valuesOf(readVolume("d.hdr")), kRamp);

@@ -244,6 +244,13 @@ TEST(ReadNrrd, Units) {
     writeBytes("b.nrrd", header + "\n" + data());
     EXPECT_EQ(readVolume("b.nrrd").lengthUnit, "um");
     EXPECT_EQ(readVolume("b.nrrd").voxelSize(), glm::dvec3(2, 3, 4));
+    // Without quotes, and of a space whose axes have no directions.
+    writeBytes(
+        "c.nrrd",
+        nrrd({{"space directions", ""}, {"spacings", "2 3 4"}, {"space units", "um um um"}}) +
+            "\n" + data());
+    EXPECT_EQ(readVolume("c.nrrd").lengthUnit, "mm");
+    EXPECT_DOUBLE_EQ(readVolume("c.nrrd").voxelSize().z, 4e-3);
 }
 
 TEST(ReadNrrd, SpacingsWithoutSpace) {
@@ -254,6 +261,43 @@ TEST(ReadNrrd, SpacingsWithoutSpace) {
     const Volume volume = readVolume("a.nrrd");
     EXPECT_EQ(volume.space, "");
     EXPECT_EQ(volume.worldFromIndex, glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 0, 0, 0, 1));
+    // Axes along those of a space, which has an origin.
+    writeBytes("b.nrrd", nrrd({{"space directions", ""}, {"spacings", "2 3 4"}}) + "\n" + data());
+    expectSample(readVolume("b.nrrd"));
+}
+
+// Lines are passed over before values, in whatever file they are.
+TEST(ReadNrrd, LinesBeforeValues) {
+    const TempFolder folder;
+    const std::string lines = std::string(200000, 'x') + "\n\n" + std::string(65535, 'y') + "\n";
+    writeBytes("a.raw", lines + data());
+    writeBytes("a.nhdr", nrrd({{"line skip", "3"}, {"data file", "a.raw"}}));
+    expectSample(readVolume("a.nhdr"));
+    writeBytes("a.nhdr", nrrd({{"line skip", "300"}, {"data file", "a.raw"}}));
+    expectRefused("a.raw: got fewer lines than are to be skipped; expected all of them", "a.nhdr");
+    writeBytes("a.nhdr",
+               nrrd({{"byte skip", "-1"}, {"encoding", "ascii"}, {"data file", "a.raw"}}));
+    expectRefused(
+        "a.nhdr: got line skip 0 and byte skip -1; expected whole numbers from 0 on "
+        "(byte skip -1: raw values that end the file)",
+        "a.nhdr");
+}
+
+// Numbers as other programs read them, or none: a long one is not two.
+TEST(ReadNrrd, NumbersOfText) {
+    const TempFolder folder;
+    const std::string header =
+        nrrd({{"type", "double "}, {"sizes", "3 1 1"}, {"encoding", "ascii"}, {"endian", ""}}) +
+        "\n";
+    writeBytes("a.nrrd", header + "1e-500 -1e-400 2." + std::string(300, '0'));
+    EXPECT_EQ(valuesOf(readVolume("a.nrrd")), (std::vector<double>{0, 0, 2}));
+    writeBytes("a.nrrd", header + "1." + std::string(500, '0') + " 2 3 4");
+    expectRefused(
+        "a.nrrd: got a number of more than 400 characters; expected enough numbers for "
+        "3x1x1 float64",
+        "a.nrrd");
+    writeBytes("a.nrrd", header + "1 1e999 3");
+    expectRefused("a.nrrd: got \"1e999\" among numbers; expected values of type float64", "a.nrrd");
 }
 
 TEST(ReadNrrd, AxesOfOneVoxel) {
@@ -507,10 +551,11 @@ TEST(ReadNrrd, LayersOfSegments) {
                   (std::vector<LabelEntry>{
                       {1, "liver", {}}, {2, "vein", {}}, {3, "tumor", {}}, {4, "other", {}}}));
         EXPECT_EQ(warnings.lines,
-                  std::vector<std::string>{
+                  (std::vector<std::string>{
                       "a.seg.nrrd: 2 layers of segments are read as one, with later segments on "
                       "top, numbered from 1 to 4 as layers share numbers (one layer: `volume` 0 to "
-                      "1)"});
+                      "1)",
+                      "a.seg.nrrd: 1 values of layers have no segment, and count as nothing"}));
         EXPECT_EQ(volume.worldFromIndex,
                   glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1));
         for (const std::int64_t layer : {0, 1}) {

@@ -71,7 +71,7 @@ std::string sourceClass(const VdbMetadata& metadata) {
 
 // All of a volume but its voxels.
 Volume describe(const DeltaHeader& header, const VdbMetadata& metadata,
-                const openvdb::math::MapBase& map) {
+                const openvdb::math::MapBase& map, const std::string& where) {
     Volume volume;
     volume.space = header.space;
     volume.lengthUnit = lengthUnitNamed(metadata.text(kLengthUnitKey));
@@ -79,7 +79,7 @@ Volume describe(const DeltaHeader& header, const VdbMetadata& metadata,
     volume.origin = originOf(header);
     volume.gridClass = sourceClass(metadata);
     volume.worldFromIndex = sourceTransform(map, header.sliceAxis);
-    settleUnit(volume);
+    settleUnit(where, volume);
     return volume;
 }
 
@@ -150,7 +150,7 @@ Volume readDeltaGrid(TreeGrid& stored, const VdbMetadata& fileMetadata, const st
     if (header.isPacked()) unpacked = unpackDeltas(stored, header, where, partOf(all, 0, 0.3));
     const Listener listener = partOf(all, header.isPacked() ? 0.3 : 0, 1);
     TreeGrid& grid = header.isPacked() ? unpacked.grid : stored;
-    Volume volume = describe(header, grid.metadata, *grid.map);
+    Volume volume = describe(header, grid.metadata, *grid.map, where);
     volume.name = grid.name();
     if (header.exact) {
         readExactDeltas(grid, header, fileMetadata, {listener, where, header.sourceType, options},
@@ -216,7 +216,7 @@ std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
         columns = columnsOf(*leaves, header, wanted, where);
         if (!columns) return std::nullopt;
         worldFromIndexOf(leaves->transform(), where);
-        volume = describe(header, metadata, leaves->transform());
+        volume = describe(header, metadata, leaves->transform(), where);
     } catch (const Error& error) {
         // What is wrong is said by who reads the grid as a whole.
         if (error.code() != ErrorCode::kInput) throw;

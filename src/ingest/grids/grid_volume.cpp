@@ -18,11 +18,12 @@
 
 namespace deltasplat {
 
-void settleUnit(Volume& volume) {
+void settleUnit(const std::string& where, Volume& volume) {
     const double millimetres = millimetresIn(volume.lengthUnit);
     if (volume.space.empty() || millimetres == 0 || millimetres == 1) return;
     scaleLengths(volume.worldFromIndex, millimetres);
     volume.lengthUnit = "mm";
+    requirePlacement(where, "lengths in millimetres", volume.worldFromIndex);
 }
 
 Volume placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metadata,
@@ -33,7 +34,7 @@ Volume placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metada
     if (space == "RAS" || space == "LPS") volume.space = space;
     volume.lengthUnit = lengthUnitNamed(metadata.text(kLengthUnitKey));
     volume.labels = labelsIn(metadata);
-    settleUnit(volume);
+    settleUnit(options.where, volume);
     return volume;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "ingest/grids/grid_codes.h"
 
 namespace deltasplat {
@@ -13,7 +15,8 @@ Volume volumeOfGrid(TreeGrid grid, const GridCodesOptions& options,
                     const VdbMetadata& fileMetadata = {});
 
 /// Makes the lengths of a patient's space millimetres, as Volume::lengthUnit has it.
-void settleUnit(Volume& volume);
+/// @throw Error(kInput) if they give voxels no place
+void settleUnit(const std::string& where, Volume& volume);
 
 /// Returns a volume that has its place, and no voxels.
 Volume placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metadata,

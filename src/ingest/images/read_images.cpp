@@ -325,7 +325,9 @@ Stack surveyStack(const std::vector<std::filesystem::path>& files, const ReadOpt
         requirePlanes(stack, first);
         stack.behind = std::make_shared<const FileBytes>(files[0]);
     }
-    warnOfLosses(files.front(), first, isPalette, listener);
+    // Numbers of a palette may come as greys of three channels.
+    if (stack.samplesRead != Samples::kNumbers)
+        warnOfLosses(files.front(), first, isPalette, listener);
     return stack;
 }
 

@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "ingest/files/file_bytes.h"
 #include "ingest/files/file_name.h"
@@ -42,10 +43,13 @@ void addPngGreys(const FileBytes& file, std::string header, std::size_t colorTyp
     for (int shift = 24; shift >= 0; shift -= 8) header += char((sum >> shift) & 0xff);
     numbers.asGreys.emplace_back(kPngPlace, header);
     std::uint64_t place = kPngPlace + kPngHeader + kChecksum;
+    // Each stands at most once in a file.
+    bool colors = false, opacities = false;
     while (true) {
         const std::string head = read(file, place, 8);
         if (head.size() < 8 || head.ends_with("IDAT")) return;
-        if (head.ends_with("PLTE") || head.ends_with("tRNS"))
+        if ((head.ends_with("PLTE") && !std::exchange(colors, true)) ||
+            (head.ends_with("tRNS") && !std::exchange(opacities, true)))
             numbers.asGreys.emplace_back(place + 4, "xxXx");
         place += 8 + std::uint64_t{numberAt(head, 0, 4, true)} + kChecksum;
     }

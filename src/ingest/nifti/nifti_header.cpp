@@ -130,7 +130,10 @@ Fields readFields(const std::filesystem::path& file) {
             const char* const wanted = fields.second ? "n+2" : "n+1";
             if (std::memcmp(magic, wanted, 4) == 0) return fields;
             fields.pair = std::memcmp(magic, fields.second ? "ni2" : "ni1", 4) == 0;
-            if (fields.pair) return fields;
+            if (fields.pair && isExtension(file, ".hdr")) return fields;
+            if (fields.pair)
+                fields.refuse("the header of a pair, whose values are in another file",
+                              "such a header in a file named .hdr");
             if (!fields.second && isExtension(file, ".hdr")) {
                 fields.refuse("a header of Analyze 7.5, which does not say where the patient lies",
                               "a NIfTI-1 or NIfTI-2 file or pair");
@@ -224,10 +227,17 @@ glm::dmat4 sform(const Fields& fields) {
     return matrix;
 }
 
-// A size of 0 is none: the voxel is one unit long.
+// A size of 0 is none: the voxel is one unit long. A negative one has no meaning: quaternions and
+// matrices alone mirror.
 double voxelSize(const Fields& fields, int axis) {
     const double size = fields.real(fields.places().pixelSizes, std::size_t(axis) + 1);
-    return size == 0 ? 1 : size;
+    return size == 0 ? 1 : std::abs(size);
+}
+
+bool hasNegativeSize(const Fields& fields) {
+    for (int axis = 0; axis < 3 && axis < fields.dim(0); ++axis)
+        if (fields.real(fields.places().pixelSizes, std::size_t(axis) + 1) < 0) return true;
+    return false;
 }
 
 // Method 2 of nifti1.h: a unit quaternion whose real part is left out, then voxel sizes; the sign
@@ -257,7 +267,7 @@ glm::dmat4 scaling(const Fields& fields) {
     glm::dmat4 matrix(1);
     for (int axis = 0; axis < 3; ++axis) {
         // Files of only one or two dimensions leave the others 0, or anything.
-        if (axis < fields.dim(0) || voxelSize(fields, axis) > 0)
+        if (axis < fields.dim(0) || std::isfinite(voxelSize(fields, axis)))
             matrix[axis][axis] = voxelSize(fields, axis);
     }
     return matrix;
@@ -290,6 +300,8 @@ void place(const Fields& fields, const Listener& listener, NiftiHeader& header) 
         listener.warn(fields.where + ": the sform gives voxels no place; " + rest);
     if (hasQform && !qformPlaces && !sformPlaces)
         listener.warn(fields.where + ": the qform gives voxels no place; " + rest);
+    if (!sformPlaces && hasNegativeSize(fields))
+        listener.warn(fields.where + ": a voxel size below 0 is taken as if it were positive");
     header.space = sformPlaces || qformPlaces ? "RAS" : "";
     if (sformPlaces) {
         header.worldFromIndex = bySform;
@@ -344,13 +356,14 @@ std::vector<std::filesystem::path> niftiFiles(const std::filesystem::path& file)
 
 NiftiHeader readNiftiHeader(const std::filesystem::path& file, const Listener& listener) {
     requireRegularFile(file);
-    const std::filesystem::path head = niftiFiles(file).front();
+    const std::vector<std::filesystem::path> files = niftiFiles(file);
+    const std::filesystem::path& head = files.front();
     if (head == file && isExtension(file, ".img"))
         refuseFile(file, "no .hdr file beside it", "both files of a NIfTI pair");
     const Fields fields = readFields(head);
     NiftiHeader header;
-    header.dataFile = fields.pair ? partnerOf(head, ".img") : head;
-    if (header.dataFile.empty())
+    header.dataFile = fields.pair ? files.back() : head;
+    if (fields.pair && files.size() < 2)
         refuseFile(head, "no .img file beside it", "both files of a NIfTI pair");
     header.layout = readLayout(fields);
     header.volumes = std::int64_t(countVolumes(fields));

@@ -124,7 +124,9 @@ class MetaReader {
         if (skipped > 0 && local) {
             refuse("HeaderSize " + std::to_string(skipped) + " for data in the same file", "0");
         }
-        volume_.atEnd = skipped == -1 && !volume_.packed && binary;
+        volume_.atEnd = skipped == -1;
+        if (volume_.atEnd && (volume_.packed || !binary))
+            refuse("HeaderSize -1 for values that are packed or text", "a number from 0 on");
         if (skipped > 0) volume_.dataStart += std::uint64_t(skipped);
     }
 

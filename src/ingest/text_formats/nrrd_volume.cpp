@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: Definition of NRRD File Format (teem.sourceforge.net/nrrd/format.html), version 5, and
-// the documentation of 3D Slicer's .seg.nrrd.
+// Based on: Definition of NRRD File Format (teem.sourceforge.net/nrrd/format.html), version 5.
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <map>
 #include <string_view>
 #include <utility>
 
@@ -73,7 +70,7 @@ class NrrdReader {
         readData();
         const std::vector<std::size_t> axes = readAxes();
         place(axes);
-        readLabels();
+        readSegments(header_, volume_);
         return std::move(volume_);
     }
 
@@ -137,13 +134,14 @@ class NrrdReader {
         }
         const std::int64_t lines = wholeField(header_, "lineskip", 0, volume_.header);
         const std::int64_t bytes = wholeField(header_, "byteskip", 0, volume_.header);
-        const bool fromEnd = bytes == -1 && !volume_.packed;
+        const bool fromEnd =
+            bytes == -1 && !volume_.packed && volume_.encoding == TextVolume::Encoding::kBytes;
         if (lines < 0 || (bytes < 0 && !fromEnd)) {
             refuse("line skip " + std::to_string(lines) + " and byte skip " + std::to_string(bytes),
-                   "whole numbers from 0 on");
+                   "whole numbers from 0 on (byte skip -1: raw values that end the file)");
         }
         passLines(lines);
-        volume_.atEnd = fromEnd && volume_.encoding == TextVolume::Encoding::kBytes;
+        volume_.atEnd = fromEnd;
         volume_.skipBytes = fromEnd ? 0 : std::uint64_t(bytes);
     }
 
@@ -153,11 +151,15 @@ class NrrdReader {
         const bool whole = volume_.dataFile == volume_.header;
         ByteSource source(volume_.dataFile, whole ? packingOf(volume_.dataFile) : Packing::kNone);
         source.skip(volume_.dataStart, [] {});
-        for (char c = 0; lines > 0; ++volume_.dataStart) {
-            if (source.read(&c, 1) != 1) {
+        std::array<char, 1 << 16> block{};
+        while (lines > 0) {
+            const std::size_t held = source.read(block.data(), block.size());
+            if (held == 0)
                 refuseFile(volume_.dataFile, "fewer lines than are to be skipped", "all of them");
-            }
-            if (c == '\n') --lines;
+            std::size_t passed = 0;
+            for (; passed < held && lines > 0; ++passed)
+                if (block[passed] == '\n') --lines;
+            volume_.dataStart += passed;
         }
     }
 
@@ -281,7 +283,7 @@ class NrrdReader {
         volume_.worldFromIndex = withThickness(volume_.worldFromIndex, volume_.layout.dims, 1);
         if (named != nullptr) volume_.space = named->becomes;
         if (named != nullptr && named->mirrored >= 0) mirror(*named);
-        const bool bySpace = !vectors.empty();
+        const bool bySpace = !vectors.empty() || find("units") == nullptr;
         readUnits(axes, bySpace ? "spaceunits" : "units", bySpace);
         requirePlacement(volume_.header.string(), "spacing and directions", volume_.worldFromIndex);
     }
@@ -311,12 +313,18 @@ class NrrdReader {
             for (int row = 0; row < rows; ++row) matrix[int(i)][row] = (*vector)[std::size_t(row)];
         }
         completeAxes(int(axes.size()), matrix);
+        placeOrigin();
+    }
+
+    void placeOrigin() {
         const std::string* const origin = find("spaceorigin");
         if (origin == nullptr) return;
+        if (spaceAxes() == 0)
+            refuse("a space origin without a space", "a space or a space dimension");
         const std::vector<double> place = vectorIn(*origin);
-        for (int row = 0; row < rows; ++row) {
+        for (int row = 0; row < std::min(spaceAxes(), 3); ++row) {
             const double number = place[std::size_t(row)];
-            matrix[3][row] = std::isnan(number) ? 0 : number;
+            volume_.worldFromIndex[3][row] = std::isnan(number) ? 0 : number;
         }
     }
 
@@ -381,13 +389,14 @@ class NrrdReader {
             if (known(mins, axis))
                 volume_.worldFromIndex[3][column] = mins[axis] + (isNode(axis) ? 0 : 0.5 * step);
         }
+        placeOrigin();
     }
 
     // @param bySpace  whether there is a unit for each axis of space, or one for each of the file
     void readUnits(const std::vector<std::size_t>& axes, const std::string& field, bool bySpace) {
         const std::string* const text = find(field);
         if (text == nullptr) return;
-        const std::vector<std::string> all = quotedIn(*text);
+        const std::vector<std::string> all = wordsIn(*text);
         std::vector<std::string> units;
         const std::size_t count = bySpace ? std::size_t(std::min(spaceAxes(), 3)) : axes.size();
         for (std::size_t i = 0; i < count; ++i) {
@@ -397,102 +406,20 @@ class NrrdReader {
         if (!units.empty()) setUnits(units, listener_, volume_);
     }
 
-    static std::vector<std::string> quotedIn(const std::string& text) {
+    // Words in quotes, which some programs leave out.
+    static std::vector<std::string> wordsIn(const std::string& text) {
         std::vector<std::string> words;
-        for (std::size_t begin = text.find('"'); begin != std::string::npos;) {
-            const std::size_t end = std::min(text.find('"', begin + 1), text.size());
-            words.push_back(text.substr(begin + 1, end - begin - 1));
-            begin = end == text.size() ? std::string::npos : text.find('"', end + 1);
+        constexpr const char* kBlanks = " \t";
+        for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string::npos;
+             at = text.find_first_not_of(kBlanks, at)) {
+            const bool quoted = text[at] == '"';
+            const std::size_t begin = at + (quoted ? 1 : 0);
+            const std::size_t end = std::min(
+                quoted ? text.find('"', begin) : text.find_first_of(kBlanks, at), text.size());
+            words.push_back(text.substr(begin, end - begin));
+            at = std::min(end + (quoted ? 1 : 0), text.size());
         }
         return words;
-    }
-
-    // The fields of segments by their numbers: "Segment12_Name" of 12.
-    std::map<std::int64_t, std::map<std::string, std::string>> segmentFields() const {
-        constexpr std::string_view kPrefix = "Segment";
-        std::map<std::int64_t, std::map<std::string, std::string>> segments;
-        for (const auto& [key, value] : header_.keyValues) {
-            if (!key.starts_with(kPrefix)) continue;
-            std::int64_t number = -1;
-            const char* const end = key.data() + key.size();
-            const auto result = std::from_chars(key.data() + kPrefix.size(), end, number);
-            if (result.ec != std::errc{} || number < 0 || result.ptr == end || *result.ptr != '_')
-                continue;
-            segments[number][std::string(result.ptr + 1, end)] = value;
-        }
-        return segments;
-    }
-
-    std::int64_t numberIn(const std::map<std::string, std::string>& fields, const std::string& name,
-                          std::int64_t missing) const {
-        const auto found = fields.find(name);
-        if (found == fields.end()) return missing;
-        const std::optional<std::vector<double>> numbers = numbersIn(found->second);
-        const bool sound = numbers && numbers->size() == 1 &&
-                           std::abs(numbers->front()) <= 0x1p31 &&
-                           numbers->front() == std::floor(numbers->front());
-        if (!sound) {
-            refuse("a segment's " + name + " " + printable(found->second.substr(0, 40)),
-                   "a whole number");
-        }
-        return std::int64_t(numbers->front());
-    }
-
-    // Segments are the labels of a file, the first lowest. A header without them may say that its
-    // values are labels as NIfTI does.
-    void readLabels() {
-        const std::string* kept = header_.findKey("Segmentation_SourceRepresentation");
-        if (kept == nullptr) kept = header_.findKey("Segmentation_MasterRepresentation");
-        // Shares of voxels are amounts.
-        if (kept != nullptr && lowerCase(*kept).starts_with("fractional")) return;
-        const auto segments = segmentFields();
-        const std::string* const intent = header_.findKey("intent_code");
-        if (segments.empty() && (intent == nullptr || *intent != "1002")) return;
-        auto list = std::make_shared<LabelList>();
-        std::int64_t number = 0;
-        for (const auto& [key, fields] : segments) {
-            const bool layered = volume_.volumes > 1;
-            Segment segment;
-            segment.layer = numberIn(fields, "Layer", layered ? number : 0);
-            segment.stored = numberIn(fields, "LabelValue", 1);
-            ++number;
-            segment.label = {segment.stored, textIn(fields, "Name"), colorIn(fields)};
-            if (segment.label.name.empty()) segment.label.name = textIn(fields, "ID");
-            if (segment.layer < 0 || segment.layer >= volume_.volumes) {
-                refuse(
-                    "segment " + std::to_string(key) + " in layer " + std::to_string(segment.layer),
-                    "one of " + std::to_string(volume_.volumes));
-            }
-            list->entries.push_back(segment.label);
-            if (layered) volume_.segments.push_back(segment);
-        }
-        if (volume_.volumes == 1) volume_.labels = std::move(list);
-        numberSegments();
-    }
-
-    // Layers may have the same number for different labels: then each gets its own.
-    void numberSegments() {
-        std::map<std::int64_t, std::int64_t> uses;
-        bool alike = false;
-        for (const Segment& segment : volume_.segments)
-            alike = alike || ++uses[segment.stored] > 1 || segment.stored < 0;
-        if (!alike) return;
-        std::int64_t number = 0;
-        for (Segment& segment : volume_.segments) segment.label.value = ++number;
-        volume_.renumbered = true;
-    }
-
-    static std::string textIn(const std::map<std::string, std::string>& fields,
-                              const std::string& name) {
-        const auto found = fields.find(name);
-        return found == fields.end() ? "" : found->second;
-    }
-
-    static std::optional<glm::dvec3> colorIn(const std::map<std::string, std::string>& fields) {
-        const std::optional<std::vector<double>> numbers = numbersIn(textIn(fields, "Color"));
-        const auto isShare = [](double number) { return number >= 0 && number <= 1; };
-        if (!numbers || numbers->size() != 3 || !std::ranges::all_of(*numbers, isShare)) return {};
-        return glm::dvec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
     }
 
     const TextHeader header_;

@@ -32,6 +32,16 @@ bool isPackedAsWhole(const TextVolume& volume) {
     return volume.dataFile == volume.header && packingOf(volume.header) == Packing::kGzip;
 }
 
+// Whether data that are said to be packed begin so. Plain ones that do by chance are refused when
+// they are unpacked, and never taken for others.
+bool beginsPacked(const std::filesystem::path& file, std::uint64_t start) {
+    if (packingOf(file, start) != Packing::kNone) return true;
+    std::array<unsigned char, 2> begin{};
+    FileBytes(file).read(start, begin.data(), begin.size());
+    // RFC 1950, 2.2: deflate, a window of at most 32 KiB, and a sum that 31 divides.
+    return (begin[0] & 15) == 8 && begin[0] >> 4 <= 7 && (begin[0] << 8 | begin[1]) % 31 == 0;
+}
+
 std::uint64_t wantedBytes(const TextVolume& volume) {
     return std::uint64_t(volume.volumes) * volume.layout.dataBytes();
 }
@@ -69,7 +79,7 @@ RawFile rawFileOf(const TextVolume& volume) {
     // What is said to be packed and is not has the very size of plain values, and the other way
     // round.
     const bool isPlain = volume.packed && rest == wanted + volume.skipBytes &&
-                         packingOf(volume.dataFile, volume.dataStart) == Packing::kNone;
+                         !beginsPacked(volume.dataFile, volume.dataStart);
     const bool isGzip = !volume.packed && !volume.atEnd && volume.dataFile != volume.header &&
                         rest != wanted + volume.skipBytes &&
                         packingOf(volume.dataFile, volume.dataStart) == Packing::kGzip;
@@ -152,8 +162,10 @@ class TextValues {
         std::string word;
         int c = get();
         while (parts(c)) c = get();
-        for (; c >= 0 && !parts(c) && word.size() < kMost; c = get()) word += char(c);
+        for (; c >= 0 && !parts(c) && word.size() <= kMost; c = get()) word += char(c);
         if (word.empty()) refuse("too few numbers");
+        if (word.size() > kMost)
+            refuse("a number of more than " + std::to_string(kMost) + " characters");
         return word;
     }
     template <typename T>
@@ -163,6 +175,13 @@ class TextValues {
         const char* const end = text.data() + text.size();
         T value{};
         auto result = std::from_chars(begin, end, value);
+        if constexpr (std::is_floating_point_v<T>) {
+            // A number too near to 0 for its type is 0, as for any other reader.
+            long double wide = 1;
+            if (result.ec == std::errc::result_out_of_range && result.ptr == end &&
+                std::from_chars(begin, end, wide).ec == std::errc{} && std::fabs(wide) < 1)
+                return T(wide);
+        }
         // Whole numbers may be written as real ones are: "3.0".
         if constexpr (std::is_integral_v<T>) {
             double real = 0;
@@ -257,35 +276,39 @@ DenseSource partOf(DenseSource source, std::int64_t parts, std::int64_t part) {
                   });
 }
 
-// What a layer's values become where all layers are one: how far up they lie, and the label.
-using Layers = std::vector<std::map<std::int64_t, std::pair<std::size_t, std::int64_t>>>;
+// What the values of layers become where all layers are one: how far up they lie, and the label.
+using Layers = std::map<std::int64_t, std::map<std::int64_t, std::pair<std::size_t, std::int64_t>>>;
 
 // One label a voxel: that of the segment which lies on top.
 DenseSource flattened(DenseSource source, const TextVolume& volume) {
-    Layers layers(std::size_t(volume.volumes));
+    Layers layers;
     std::int64_t most = 0;
     for (std::size_t i = 0; i < volume.segments.size(); ++i) {
         const Segment& segment = volume.segments[i];
-        layers[std::size_t(segment.layer)][segment.stored] = {i + 1, segment.label.value};
+        layers[segment.layer][segment.stored] = {i + 1, segment.label.value};
         most = std::max(most, segment.label.value);
     }
-    const RawType type = most < 256     ? RawType::kUint8
-                         : most < 65536 ? RawType::kUint16
-                                        : RawType::kInt32;
+    const RawType type = most < 0x100        ? RawType::kUint8
+                         : most < 0x10000    ? RawType::kUint16
+                         : most < 0x7fffffff ? RawType::kInt32
+                                             : RawType::kInt64;
     const RawType stored = source.type;
     const bool swap = mustSwap(source.bigEndian);
     const auto bytes = std::size_t(rawTypeBytes(stored));
-    const auto one = [layers = std::move(layers), type, stored, swap, bytes](const std::byte* from,
-                                                                             std::byte* to) {
+    const auto nameless = std::make_shared<std::uint64_t>(0);
+    const auto one = [layers = std::move(layers), type, stored, swap, bytes, nameless](
+                         const std::byte* from, std::byte* to) {
         std::pair<std::size_t, std::int64_t> top{0, 0};
-        for (const auto& layer : layers) {
-            const std::int64_t value = withRawType(stored, [&](auto zero) {
-                return std::int64_t(loadValue<decltype(zero)>(from, swap));
+        for (const auto& [number, labels] : layers) {
+            const double value = withRawType(stored, [&](auto zero) {
+                return double(loadValue<decltype(zero)>(from + bytes * std::size_t(number), swap));
             });
-            from += bytes;
-            if (value == 0) continue;
-            const auto found = layer.find(value);
-            if (found != layer.end()) top = std::max(top, found->second);
+            if (!(std::fabs(value) < 0x1p53) || value == 0) continue;
+            const auto found = labels.find(std::int64_t(value));
+            if (found != labels.end() && double(found->first) == value)
+                top = std::max(top, found->second);
+            else
+                ++*nameless;
         }
         withRawType(type, [&](auto zero) {
             const auto value = decltype(zero)(top.second);
@@ -294,6 +317,17 @@ DenseSource flattened(DenseSource source, const TextVolume& volume) {
     };
     DenseSource result = joined(std::move(source), volume.volumes, type, one);
     result.bigEndian = std::endian::native == std::endian::big;
+    // Said once, however often values are read.
+    const auto said = std::make_shared<bool>(false);
+    result.forEachLayer = [all = std::move(result.forEachLayer), nameless, said,
+                           where = volume.header.string()](const DenseSource::LayerUse& use,
+                                                           const Listener& listener) {
+        *nameless = 0;
+        all(use, listener);
+        if (*nameless > 0 && !std::exchange(*said, true))
+            listener.warn(where + ": " + std::to_string(*nameless) +
+                          " values of layers have no segment, and count as nothing");
+    };
     return result;
 }
 

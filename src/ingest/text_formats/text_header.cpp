@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -12,6 +14,7 @@
 #include "deltasplat/error.h"
 #include "ingest/files/byte_source.h"
 #include "lower_case.h"
+#include "memory.h"
 #include "printable.h"
 
 namespace deltasplat {
@@ -174,15 +177,29 @@ constexpr std::array<std::string_view, 28> kMetaFields{"NDims",
                                                        "intent_code",
                                                        "ElementDataFile"};
 
+// The fields of a format by their letters.
+using Spellings = std::map<std::string, std::string_view, std::less<>>;
+Spellings spellingsOf(std::span<const std::string_view> fields) {
+    Spellings spellings;
+    for (const std::string_view field : fields) spellings.emplace(fieldName(field), field);
+    return spellings;
+}
+
 // How a format spells the field whose letters these are; empty if it has none.
-std::string_view spellingOf(std::span<const std::string_view> fields, const std::string& letters) {
-    const auto found = std::ranges::find_if(
-        fields, [&](std::string_view field) { return fieldName(field) == letters; });
-    return found == fields.end() ? std::string_view() : *found;
+std::string_view spellingOf(const Spellings& spellings, const std::string& letters) {
+    const auto found = spellings.find(letters);
+    return found == spellings.end() ? std::string_view() : found->second;
 }
 
 // Takes a line "key:=value", where backslashes stand before what would end a line or a key.
-void addKeyValue(const std::string& line, std::size_t sign, TextHeader& header) {
+void addKeyValue(const Lines& lines, const std::string& line, std::size_t sign,
+                 TextHeader& header) {
+    // Short keys take many times the bytes that they have in the file.
+    constexpr std::size_t kKeysAtOnce = std::size_t{1} << 14;
+    if (header.keyValues.size() % kKeysAtOnce == 0) {
+        requireMemory(lines.where(), double(header.keyValues.size() + kKeysAtOnce) *
+                                         sizeof(header.keyValues.front()));
+    }
     const auto plain = [](const std::string& text) {
         std::string result;
         for (std::size_t i = 0; i < text.size(); ++i) {
@@ -201,27 +218,30 @@ void addNrrdLine(const Lines& lines, const std::string& line, TextHeader& header
     const std::size_t colon = std::min(line.find(':'), line.size());
     const std::string before = line.substr(0, colon);
     const std::string letters = fieldName(before);
-    const std::string_view spelling = spellingOf(kNrrdFields, letters);
+    static const Spellings spellings = spellingsOf(kNrrdFields);
+    const std::string_view spelling = spellingOf(spellings, letters);
     const bool spelled = lowerCase(before) == spelling || lowerCase(before) == letters;
     const bool isField = !spelling.empty() && line.compare(colon, 2, ": ") == 0;
     if (!isField || !spelled) {
         const std::size_t sign = line.find(":=");
-        if (sign != std::string::npos) return addKeyValue(line, sign, header);
+        if (sign != std::string::npos) return addKeyValue(lines, line, sign, header);
         refuseLine(
             lines, line,
             spelling.empty() ? "\"field: value\"" : "\"" + std::string(spelling) + ": value\"");
     }
     requireText(lines, line);
-    // Blanks behind a name of a file are part of it.
     const std::size_t value = std::min(line.size(), line.find_first_not_of(" \t", colon + 1));
-    addField(lines, {letters, line.substr(value)}, header);
+    // Blanks behind the name of a file are part of it.
+    const bool isName = letters == "datafile";
+    addField(lines, {letters, isName ? line.substr(value) : trimmed(line.substr(value))}, header);
 }
 
 void addMetaLine(const Lines& lines, const std::string& line, TextHeader& header) {
     const std::size_t sign = line.find('=');
     const std::string name = trimmed(line.substr(0, std::min(sign, line.size())));
     if (sign == std::string::npos || name.empty()) refuseLine(lines, line, "\"Name = value\"");
-    const std::string_view spelling = spellingOf(kMetaFields, fieldName(name));
+    static const Spellings spellings = spellingsOf(kMetaFields);
+    const std::string_view spelling = spellingOf(spellings, fieldName(name));
     if (spelling.empty()) return;
     requireText(lines, line);
     const std::string value = trimmed(line.substr(sign + 1));

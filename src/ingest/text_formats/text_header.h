@@ -28,7 +28,8 @@ struct TextHeader {
 };
 
 /// Reads lines `name: value` and `key:=value` up to an empty line or the file's end, of a file that
-/// may lie under gzip. Comments are passed over. Blanks behind a value belong to it.
+/// may lie under gzip. Comments are passed over. Blanks behind the name of a data file belong to
+/// it.
 /// @throw Error(kInput) if the file cannot be read, does not begin with "NRRD000" and 1 to 5, or
 /// has
 ///        a line of more than 2^20 bytes or a header of more than 2^24

@@ -63,6 +63,10 @@ TextVolume readNrrdVolume(const std::filesystem::path& file, const Listener& lis
 /// Reads the header of a .mhd or .mha file; likewise.
 TextVolume readMetaVolume(const std::filesystem::path& file, const Listener& listener);
 
+/// Takes the segments of a .seg.nrrd as the labels of the file, the first lowest. A header without
+/// them may say that its values are labels, as NIfTI does.
+void readSegments(const TextHeader& header, TextVolume& volume);
+
 /// Returns the value of a field.
 /// @throw Error(kInput) if there is none
 const std::string& requireField(const TextHeader& header, const std::string& field,
