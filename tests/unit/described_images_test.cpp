@@ -93,6 +93,9 @@ TEST(ImageJ, SpacingAndUnits) {
     EXPECT_EQ(placeOf("unit=cm\r\n"), "0.100000 1.000000 cm");
     EXPECT_EQ(placeOf("unit=pixel\nspacing=2"), "0.100000 2.000000 ");
     EXPECT_EQ(placeOf("spacing=2"), "0.100000 2.000000 ");
+    // Units of axes that have their own become one.
+    EXPECT_EQ(placeOf("unit=micron\nyunit=micron\nzunit=nm\nspacing=500"), "0.100000 0.500000 um");
+    EXPECT_EQ(placeOf("unit=micron\nzunit=frog\nspacing=500"), "0.100000 500.000000 ");
     ReadOptions options;
     options.raw.spacing = {1, 1, 1};
     EXPECT_EQ(placeOf("unit=mm\nspacing=2", options), "1.000000 1.000000 ");
@@ -335,6 +338,10 @@ TEST(Tiff, WhatOtherProgramsSay) {
     EXPECT_EQ(valuesIn("a.tif", 1), planesOf({3, 4, 5}));
     expectRefused("a.tif: got 2 volumes (axes 2); expected one, chosen by `volume` 0 to 1",
                   "a.tif");
+    for (const char* const shape : {"3, 3, 4, 1", "3, 1, 3, 4", "1, 3, 1, 3, 4", "3, 3, 4"}) {
+        writePages("a.tif", "{\"shape\": [" + std::string(shape) + "]}", 3);
+        EXPECT_EQ(valuesIn("a.tif"), planesOf({0, 1, 2})) << shape;
+    }
     writeOneDirectory("b.tif", "{\"shape\": [5, 3, 4], \"truncated\": true}", 5);
     EXPECT_EQ(valuesIn("b.tif"), ramp<double>(60));
     TiffPageBytes metaMorph = page16(0);

@@ -4,6 +4,7 @@
 #include "ingest/images/tiff_volume.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <functional>
@@ -15,6 +16,7 @@
 #include "ingest/files/refuse_file.h"
 #include "ingest/images/ome_planes.h"
 #include "length_unit.h"
+#include "number_text.h"
 #include "printable.h"
 
 namespace deltasplat {
@@ -100,7 +102,7 @@ class ImageJ {
         return planesOf(file_.string(), slices, channels, times, at, listener);
     }
 
-    void setSpacing(TiffVolume& volume) const {
+    void setSpacing(TiffVolume& volume, const Listener& listener) const {
         constexpr int kInch = 2, kCentimetre = 3;
         glm::dvec3 spacing(1);
         const bool isScreen = tiff_.pixelsPerUnit.x == 72 && !lines_.contains("unit");
@@ -111,6 +113,12 @@ class ImageJ {
         if (depth > 0 && std::isfinite(depth)) spacing.z = depth;
         if (lines_.contains("unit")) {
             volume.lengthUnit = lengthUnitNamed(lines_.at("unit"));
+            if (!toOneUnit(spacing, volume.lengthUnit)) {
+                listener.warn(file_.string() +
+                              ": its axes have units of their own, not all of "
+                              "which are known; lengths stay as they are");
+                volume.lengthUnit.clear();
+            }
         } else if (!isScreen && tiff_.pixelsPerUnit.x > 0) {
             volume.lengthUnit = tiff_.resolutionUnit == kInch         ? "in"
                                 : tiff_.resolutionUnit == kCentimetre ? "cm"
@@ -122,7 +130,8 @@ class ImageJ {
     // What values mean, if it is a straight line.
     void setRescale(TiffVolume& volume, const Listener& listener) const {
         constexpr int kStraight = 0, kNone = 20;
-        const int function = int(number("cf").value_or(kStraight));
+        const double said = number("cf").value_or(kStraight);
+        const int function = said >= 0 && said < 100 ? int(said) : -1;
         const std::optional<double> c0 = number("c0"), c1 = number("c1");
         if (function == kNone || (function == kStraight && !c0 && !c1)) return;
         const Rescale rescale{c1.value_or(1), c0.value_or(0)};
@@ -133,11 +142,24 @@ class ImageJ {
         } else {
             listener.warn(file_.string() +
                           ": values are calibrated by no straight line (ImageJ's cf=" +
-                          std::to_string(function) + "), and read as stored");
+                          numberText(said) + "), and read as stored");
         }
     }
 
   private:
+    // @return whether there is one: that of x, unless y and z have units of their own
+    bool toOneUnit(glm::dvec3& spacing, const std::string& unit) const {
+        constexpr std::array<const char*, 3> kNames{"unit", "yunit", "zunit"};
+        for (std::size_t axis = 1; axis < kNames.size(); ++axis) {
+            const auto own = lines_.find(kNames[axis]);
+            if (own == lines_.end() || own->second == lines_.at("unit")) continue;
+            const double millimetres = millimetresIn(lengthUnitNamed(own->second));
+            if (millimetres == 0 || unit.empty()) return false;
+            spacing[int(axis)] *= millimetres / millimetresIn(unit);
+        }
+        return true;
+    }
+
     std::optional<double> number(const char* name) const {
         const auto found = lines_.find(name);
         return found == lines_.end() ? std::nullopt : numberIn<double>(found->second);
@@ -238,10 +260,21 @@ std::vector<std::int64_t> shapeIn(const std::string& text) {
 Planes planesOfShape(const TiffPages& tiff) {
     std::vector<std::int64_t> shape = shapeIn(tiff.description);
     const std::size_t ofPage = tiff.samples > 1 ? 3 : 2;
+    const auto imagesOf = [&shape, ofPage] {
+        double images = 1;
+        for (std::size_t i = 0; i + ofPage < shape.size(); ++i) images *= double(shape[i]);
+        return images;
+    };
+    const auto held = double(std::max(std::int64_t(tiff.pages.size()), planesBehind(tiff)));
+    // A last axis of one sample is none of the page's two.
+    while (shape.size() > ofPage && shape.back() == 1 && imagesOf() > held) shape.pop_back();
     Planes planes;
     planes.slices = 0;
     if (shape.size() <= ofPage) return planes;
     shape.resize(shape.size() - ofPage);
+    // Axes of one element number nothing.
+    std::erase(shape, 1);
+    if (shape.empty()) shape.push_back(1);
     planes.slices = shape.back();
     double volumes = 1;
     for (std::size_t i = 0; i + 1 < shape.size(); ++i) {
@@ -326,7 +359,7 @@ TiffVolume findTiffVolume(const Path& file, const TiffPages& tiff, bool isAlone,
         const ImageJ imageJ(file, tiff);
         isTaken =
             taker.take(imageJ.planes(listener), imageJ.images(), "ImageJ", pages, listener, volume);
-        imageJ.setSpacing(volume);
+        imageJ.setSpacing(volume, listener);
         volume.isPaletteShown = true;
         imageJ.setRescale(volume, listener);
     } else if (tiff.metaMorphPlanes > 1) {
