@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: Edwin Catmull and Raphael Rom, "A Class of Local Interpolating Splines", 1974; Isaac
-// Schoenberg, "Contributions to the Problem of Approximation of Equidistant Data by Analytic
-// Functions", 1946 (B-splines); Don Mitchell and Arun Netravali, "Reconstruction Filters in
-// Computer Graphics", 1988.
+// Based on: Edwin Catmull and Raphael Rom, "A Class of Local Interpolating Splines", 1974; Don
+// Mitchell and Arun Netravali, "Reconstruction Filters in Computer Graphics", 1988.
 #include "image/filter_table.h"
 
 #include <algorithm>
@@ -23,15 +21,6 @@ double catmullRom(double x) {
     if (x < 1) return 1 + x * x * (1.5 * x - 2.5);
     if (x < 2) return 2 - x * (4 - x * (2.5 - 0.5 * x));
     return 0;
-}
-
-// The box of width 1 convolved with itself five times, as a sum of truncated powers.
-double quinticBSpline(double x) {
-    const auto power = [x = std::abs(x)](double edge) {
-        const double rest = std::max(0.0, edge - x);
-        return rest * rest * rest * rest * rest;
-    };
-    return (power(3) - 6 * power(2) + 15 * power(1)) / 120;
 }
 
 double mitchell(double x) {
@@ -56,8 +45,6 @@ double boxOverlap(double x, double width) {
 // How far a filter that is `stretch` times wider reaches, in lattice points.
 double reachOf(WarpFilter filter, double stretch) {
     switch (filter) {
-        case WarpFilter::kSmooth:
-            return 3 * stretch;
         case WarpFilter::kGauss:
             return kGaussReach * stretch;
         case WarpFilter::kBox:
@@ -71,10 +58,6 @@ double weightAt(WarpFilter filter, double x, double stretch) {
     switch (filter) {
         case WarpFilter::kSharp:
             return catmullRom(x / stretch);
-        case WarpFilter::kSmooth:
-            return quinticBSpline(x / stretch);
-        case WarpFilter::kLinear:
-            return std::max(0.0, 1 - std::abs(x / stretch));
         case WarpFilter::kMitchell:
             return mitchell(x / stretch);
         case WarpFilter::kGauss:

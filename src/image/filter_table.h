@@ -10,8 +10,6 @@ namespace deltasplat {
 /// What is between lattice points. None lets a value leave the range of its neighbours.
 enum class WarpFilter {
     kSharp,     ///< Catmull-Rom, clamped to the nearest lattice points: for pictures
-    kSmooth,    ///< quintic B-spline: every lattice point keeps its weight, for sums
-    kLinear,    ///< linear: for largest values, which stay what they are
     kMitchell,  ///< clamped to all lattice points that it reads
     kGauss,
     kBox  ///< what a square as wide as the stretch covers of the lattice points' own squares

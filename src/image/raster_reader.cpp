@@ -118,9 +118,10 @@ FixedPosition fixedPosition(glm::dvec2 position) {
 
 const FilterTable& narrowestFilter(WarpFilter filter) {
     // In the order of their names' declaration.
-    static const FilterTable tables[] = {{WarpFilter::kSharp, 1},  {WarpFilter::kSmooth, 1},
-                                         {WarpFilter::kLinear, 1}, {WarpFilter::kMitchell, 1},
-                                         {WarpFilter::kGauss, 1},  {WarpFilter::kBox, 1}};
+    static const FilterTable tables[] = {{WarpFilter::kSharp, 1},
+                                         {WarpFilter::kMitchell, 1},
+                                         {WarpFilter::kGauss, 1},
+                                         {WarpFilter::kBox, 1}};
     return tables[std::size_t(filter)];
 }
 
