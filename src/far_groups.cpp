@@ -450,16 +450,16 @@ std::vector<std::size_t> FarGroups::frontToBack(const Camera& camera) const {
     return order;
 }
 
-void FarGroups::warnOfDots(const Camera& camera, const Listener& listener) const {
+bool FarGroups::warnOfDots(const Camera& camera, const Listener& listener) const {
     constexpr double kDot = 2;  // pixels
     std::size_t seen = 0;
     for (std::size_t i = 0; i < size(); ++i) {
         const Seen one = seenBy(camera, i);
         if (one.part.empty()) continue;
-        if (std::max(one.size.x, one.size.y) > kDot) return;
+        if (std::max(one.size.x, one.size.y) > kDot) return false;
         ++seen;
     }
-    if (seen == 0) return;
+    if (seen == 0) return false;
     const auto largest = std::max_element(impl_->groups.begin(), impl_->groups.end(),
                                           [&](const Impl::Group& a, const Impl::Group& b) {
                                               return impl_->voxelsOf(a) < impl_->voxelsOf(b);
@@ -481,6 +481,7 @@ void FarGroups::warnOfDots(const Camera& camera, const Listener& listener) const
                   numberText(tenths) + " % of the voxels lie in " + rangesText(largest->box) +
                   ", which `cropIndex` leaves, and `targetWorld` " + numberText(middle) +
                   " with `frameWidthWorld` " + roundedText(width) + " shows");
+    return true;
 }
 
 }  // namespace deltasplat

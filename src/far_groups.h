@@ -42,8 +42,9 @@ class FarGroups {
     Seen seenBy(const Camera& camera, std::size_t group) const;
     /// Returns the numbers of all groups, those in front first.
     std::vector<std::size_t> frontToBack(const Camera& camera) const;
-    /// Says so where a picture shows no group larger than a pixel, and what would.
-    void warnOfDots(const Camera& camera, const Listener& listener) const;
+    /// Says so where a picture shows no group larger than a pixel, and what would; returns whether
+    /// it did.
+    bool warnOfDots(const Camera& camera, const Listener& listener) const;
 
   private:
     struct Impl;

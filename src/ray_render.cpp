@@ -158,7 +158,6 @@ void renderTask(const RayTask& task, const Listener& listener, Image& image, Ren
     stats.visible = rays.visible;
     const Clock::time_point renderStart = Clock::now();
     picture.render(image, listener);
-    stats.footprint = 1;
     const double seconds = secondsSince(renderStart);
     stats.splatSeconds += seconds;
     stats.renderSeconds += seconds;
@@ -206,8 +205,9 @@ PixelBox wholeTiles(const PixelBox& part, const Volume& volume, const Camera& ca
             glm::min((part.max + pixels - 1) / pixels * pixels, camera.sizePixels)};
 }
 
-// Follows rays through groups of voxels that lie far apart, one after the other.
-void renderFar(const FarGroups& far, const RayTask& whole, const Listener& listener,
+// Follows rays through groups of voxels that lie far apart, one after the other. Returns whether it
+// has said that the picture shows no more than dots.
+bool renderFar(const FarGroups& far, const RayTask& whole, const Listener& listener,
                RenderResult& result) {
     const std::vector<std::size_t> order = far.frontToBack(whole.camera);
     for (std::size_t i = 0; i < order.size(); ++i) {
@@ -221,8 +221,8 @@ void renderFar(const FarGroups& far, const RayTask& whole, const Listener& liste
                    partOf(listener, double(i) / count, double(i + 1) / count), image, result.stats);
         putTogether(image, part.min, whole.options.mode, result.image);
     }
-    far.warnOfDots(whole.camera, listener);
-    if (showsSums(whole.options.mode)) return;
+    const bool saysDots = far.warnOfDots(whole.camera, listener);
+    if (showsSums(whole.options.mode)) return saysDots;
     // The range of values is that of all in whatever group.
     const Volume one = far.volume(0);
     const RayVolume rays = makeRayVolume(one, RayRule::kMax, valueMapOf(whole.options));
@@ -232,6 +232,7 @@ void renderFar(const FarGroups& far, const RayTask& whole, const Listener& liste
         for (int x = 0; x < result.image.size.x; ++x, rgba += 4)
             painter.paint(ValuePainter::keptIn(rgba), rgba);
     });
+    return saysDots;
 }
 
 }  // namespace
@@ -250,13 +251,14 @@ void renderRays(const Volume& volume, const RenderOptions& options, const Listen
         const RayTask whole{
             volume, options, result.camera, {{0, 0}, result.camera.sizePixels}, volume.box};
         warnOfValues(volume, options, far ? 1 : result.stats.slices, view.sliceStepWorld, listener);
+        bool saysDots = false;
         if (far) {
-            renderFar(*far, whole, listener, result);
+            saysDots = renderFar(*far, whole, listener, result);
         } else {
             renderTask(whole, listener, result.image, result.stats);
         }
         // Sums may be 0 of what is there.
-        if (!showsSums(options.mode) && isEmpty(result.image))
+        if (!showsSums(options.mode) && !saysDots && isEmpty(result.image))
             listener.warn(emptyPictureText(volume, "fills less than half of any pixel"));
     }
     if (options.mode == Mode::kDrr) showTransmission(options.drr, result.image);

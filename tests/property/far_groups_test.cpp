@@ -348,7 +348,8 @@ TEST(FarGroups, areDotsInAFrameOfAll) {
     const Limit limit(kLimit);
     for (const glm::ivec3& place : farPlaces()) {
         const Volume both = blobsAt({{0, 0, 0}, place});
-        for (const Mode mode : {Mode::kComposite, Mode::kMip, Mode::kXray}) {
+        for (const Mode mode :
+             {Mode::kComposite, Mode::kMip, Mode::kMin, Mode::kAverage, Mode::kXray}) {
             for (const Projection projection :
                  {Projection::kOrtho, Projection::kPerspective, Projection::kLatlong}) {
                 RenderOptions options = someOptions(mode);
@@ -358,6 +359,9 @@ TEST(FarGroups, areDotsInAFrameOfAll) {
                 std::string said;
                 render(both, options, {{}, [&](const std::string& text) { said += text + "\n"; }});
                 EXPECT_NE(said.find("no more than dots"), std::string::npos) << said;
+                if (mode != Mode::kComposite) {
+                    EXPECT_EQ(said.find("picture: empty"), std::string::npos) << said;
+                }
                 EXPECT_NE(said.find("50 % of the voxels lie in 0:10,0:10,0:10"), std::string::npos)
                     << said;
             }

@@ -151,15 +151,18 @@ std::string statsSummary(const RenderResult& result, const RenderTimes& times,
                          const DeepStats& deep) {
     const RenderStats& stats = result.stats;
     char text[512];
+    char splats[128] = "";
+    if (stats.mode == Mode::kComposite)
+        std::snprintf(splats, sizeof splats, " in %d slabs, %s a voxel, footprint %dx%d",
+                      stats.slabs, sheetPixelsText(stats.resolution).c_str(), stats.footprint,
+                      stats.footprint);
     std::snprintf(text, sizeof text,
-                  "%s%d slices along %s in %d slabs, %s a voxel, footprint %dx%d\n"
+                  "%s%d slices along %s%s\n"
                   "seconds: read %.3f, prepare %.3f, render %.3f (splat %.3f, composite %.3f, "
                   "warp %.3f), write %.3f, total %.3f\n",
                   workSummary(stats).c_str(), stats.slices, axisName(stats.sliceAxis).c_str(),
-                  stats.slabs, sheetPixelsText(stats.resolution).c_str(), stats.footprint,
-                  stats.footprint, times.read, stats.prepareSeconds, stats.renderSeconds,
-                  stats.splatSeconds, stats.compositeSeconds, stats.warpSeconds, times.write,
-                  times.total);
+                  splats, times.read, stats.prepareSeconds, stats.renderSeconds, stats.splatSeconds,
+                  stats.compositeSeconds, stats.warpSeconds, times.write, times.total);
     char preview[64] = "";
     if (times.preview > 0)
         std::snprintf(preview, sizeof preview, "preview: %.3f seconds before\n", times.preview);
