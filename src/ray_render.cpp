@@ -28,7 +28,8 @@ namespace {
 
 // Lines of sight along each side of a tile, of which what they read of eight slices stays in the
 // second-level cache.
-constexpr int kTileLines = 32;
+constexpr int kTileLines = 64;
+constexpr int kSquare = 8;
 
 RayRule ruleOf(Mode mode) {
     if (showsSums(mode)) return RayRule::kSum;
@@ -76,7 +77,7 @@ class RayPicture {
         std::atomic<int> done = 0;
         SharedProgress progress(listener);
         parallelFor(std::size_t(std::min(threadCount(), count)), [&](std::size_t) {
-            Tile tile{RayFollower(rays_, ruleOf(mode_)), {}, {}, {}};
+            Tile tile{RayFollower(rays_, ruleOf(mode_)), {}, {}, {}, {}};
             for (int i = next++; i < count; i = next++) {
                 const glm::ivec2 first = pixels * glm::ivec2(i % tiles.x, i / tiles.x);
                 paintTile(first, glm::min(first + pixels, image.size), tile, image);
@@ -88,6 +89,7 @@ class RayPicture {
   private:
     struct Tile {
         RayFollower follower;
+        std::vector<std::size_t> places;  // of lines, row by row, in what follows
         std::vector<PictureLine> lines;
         std::vector<SightRay> rays;
         std::vector<RayFound> found;
@@ -97,17 +99,25 @@ class RayPicture {
         const int n = lines_.perSide();
         const glm::ivec2 from = n * (part_.min + first);
         const glm::ivec2 to = n * (part_.min + last);
+        const int width = to.x - from.x;
         tile.lines.clear();
         tile.rays.clear();
-        for (int y = from.y; y < to.y; ++y) {
-            for (int x = from.x; x < to.x; ++x) {
-                tile.lines.push_back(lines_.at(x, y));
-                tile.rays.push_back(tile.lines.back().ray);
+        tile.places.resize(std::size_t(width) * std::size_t(to.y - from.y));
+        // Square by square: lines that are followed together lie close to each other.
+        for (int top = from.y; top < to.y; top += kSquare) {
+            for (int left = from.x; left < to.x; left += kSquare) {
+                for (int y = top; y < std::min(top + kSquare, to.y); ++y) {
+                    for (int x = left; x < std::min(left + kSquare, to.x); ++x) {
+                        tile.places[std::size_t((y - from.y) * width + x - from.x)] =
+                            tile.lines.size();
+                        tile.lines.push_back(lines_.at(x, y));
+                        tile.rays.push_back(tile.lines.back().ray);
+                    }
+                }
             }
         }
         tile.found.resize(tile.rays.size());
         tile.follower.follow(tile.rays, tile.found);
-        const int width = n * (last.x - first.x);
         for (int y = first.y; y < last.y; ++y) {
             for (int x = first.x; x < last.x; ++x)
                 paint(tile, std::size_t(n) * std::size_t((y - first.y) * width + x - first.x),
@@ -124,8 +134,8 @@ class RayPicture {
         int met = 0;
         for (int j = 0; j < n; ++j, at += std::size_t(width)) {
             for (std::size_t i = at; i < at + std::size_t(n); ++i) {
-                const RayFound& found = tile.found[i];
-                const PictureLine& line = tile.lines[i];
+                const RayFound& found = tile.found[tile.places[i]];
+                const PictureLine& line = tile.lines[tile.places[i]];
                 if (!found.isMet) continue;
                 value += found.value * (showsSums(mode_) ? line.lengthWorld : 1);
                 shade += mode_ == Mode::kMip ? shade_.at(line.depthAt(found.slice)) : 1;

@@ -2,62 +2,15 @@
 #include "rays/patch_reader.h"
 
 #include <algorithm>
-#include <bit>
 #include <glm/vector_relational.hpp>
 #include <limits>
 #include <tuple>
-
-#include "bit_matrix.h"
 
 namespace deltasplat {
 namespace {
 
 // Vectors of four are read from any place on.
 constexpr std::size_t kSpare = 4;
-
-// A word for each slice of a block: bit 8 * u + v is set where the voxel is active.
-using ActiveWords = std::array<std::uint64_t, 8>;
-
-ActiveWords activeWords(const CodeTree::Leaf& leaf, int sliceAxis) {
-    ActiveWords words{};
-    const auto& mask = leaf.getValueMask();
-    for (int x = 0; x < 8; ++x) {
-        const auto word = mask.getWord<std::uint64_t>(openvdb::Index(x));  // bit 8 * y + z
-        const std::uint64_t turned = sliceAxis == 2 ? transposedBits(word) : 0;
-        for (std::size_t i = 0; i < 8; ++i) {
-            if (sliceAxis == 1) words[i] |= (word >> (8 * i) & 0xFF) << (8 * x);  // bit 8 * x + z
-            if (sliceAxis == 2) words[i] |= (turned >> (8 * i) & 0xFF) << (8 * x);
-        }
-        if (sliceAxis == 0) words[std::size_t(x)] = word;
-    }
-    if (sliceAxis == 1) {
-        for (std::uint64_t& word : words) word = transposedBits(word);
-    }
-    return words;
-}
-
-// Reads a block in the order of an axis.
-void readBlock(const RayVolume& volume, const CodeBlock& block, int axis, float* values,
-               float* active) {
-    const BlockPlace place{values, 64, 8};
-    if (volume.sourceValues) {
-        volume.sourceValues(block, axis, place);
-    } else if (block.leaf) {
-        readBlockValues(block.leaf->buffer().data(), axis, volume.values, place);
-    } else {
-        std::fill_n(values, 512, volume.valueOf(Code(block.tileSlot - 1)));
-    }
-    if (active) std::fill_n(active, 512, 1.0f);
-    if (!block.leaf || block.leaf->isDense()) return;
-    const ActiveWords words = activeWords(*block.leaf, axis);
-    for (std::size_t slice = 0; slice < 8; ++slice) {
-        for (std::uint64_t off = ~words[slice]; off != 0; off &= off - 1) {
-            const std::size_t at = 64 * slice + std::size_t(std::countr_zero(off));
-            values[at] = volume.empty;
-            if (active) active[at] = 0;
-        }
-    }
-}
 
 // Positions [first, last] of a box along one axis that voxels [8 * block, 8 * block + 7] have.
 struct Overlap {
@@ -71,6 +24,19 @@ struct Overlap {
         last = std::min(std::max(a, b), box.first[i] + box.size[i] - 1);
     }
 };
+
+// Copies values forwards or backwards: mostly eight, in vectors.
+void copyRow(const float* from, std::ptrdiff_t count, bool isForward, float* to) {
+    if (count == 8 && isForward) {
+        std::copy_n(from, 8, to);
+    } else if (count == 8) {
+        std::reverse_copy(from, from + 8, to);
+    } else if (isForward) {
+        std::copy_n(from, count, to);
+    } else {
+        std::reverse_copy(from, from + count, to);
+    }
+}
 
 bool isBefore(const CodeBlock& block, const glm::ivec3& position) {
     return std::tie(block.position.y, block.position.z, block.position.x) <
@@ -117,16 +83,18 @@ const RayPatch& PatchReader::read(const RayAxes& axes, const PatchBox& box) {
     const std::size_t count = slice * std::size_t(box.size.x) + kSpare;
     values_.assign(count, volume_.empty);
     if (asksActive) active_.assign(count, 0.0f);
-    for (const CodeBlock* block : found_) addBlock(axes, box, *block);
+    std::size_t wholes = 0;
+    for (const CodeBlock* block : found_) wholes += addBlock(axes, box, *block);
+    const bool isWhole = wholes == slice * std::size_t(box.size.x);
     patch_ = RayPatch();
     patch_.values = values_.data();
-    patch_.active = asksActive ? active_.data() : nullptr;
+    patch_.active = asksActive && !isWhole ? active_.data() : nullptr;
     patch_.sliceStep = std::ptrdiff_t(slice);
     patch_.slices = box.size.x;
     patch_.sizeU = box.size.y;
     patch_.sizeV = box.size.z;
-    patch_.leavesOut = rule_ == RayRule::kMaxActive;
-    if (rule_ == RayRule::kMax || rule_ == RayRule::kMaxActive) findTops(box);
+    patch_.leavesOut = rule_ == RayRule::kMaxActive && !isWhole;
+    if (isExtreme(rule_)) findTops(box);
     return patch_;
 }
 
@@ -166,10 +134,12 @@ void PatchReader::findTops(const PatchBox& box) {
     patch_.tops = tops_.data();
 }
 
-void PatchReader::addBlock(const RayAxes& axes, const PatchBox& box, const CodeBlock& block) {
+// Returns how many voxels it has written of a block that is active as a whole.
+std::size_t PatchReader::addBlock(const RayAxes& axes, const PatchBox& box,
+                                  const CodeBlock& block) {
     const bool asksActive = rule_ != RayRule::kSum;
-    readBlock(volume_, block, axes.order[0], block_.data(),
-              asksActive ? blockActive_.data() : nullptr);
+    const bool isWhole = readBlock(volume_, block, axes.order[0], block_.data(),
+                                   asksActive ? blockActive_.data() : nullptr);
     const glm::ivec3 position(block.position[axes.order[0]], block.position[axes.order[1]],
                               block.position[axes.order[2]]);
     const Overlap s(axes, box, 0, position.x);
@@ -178,22 +148,23 @@ void PatchReader::addBlock(const RayAxes& axes, const PatchBox& box, const CodeB
     const auto inBlock = [&](int i, int at) {
         return std::ptrdiff_t(axes.voxelAt(i, at) - 8 * position[i]);
     };
+    const std::ptrdiff_t columns = v.last - v.first + 1;
+    const bool isForward = axes.sign[2] > 0;
+    const std::ptrdiff_t firstColumn = inBlock(2, isForward ? v.first : v.last);
     for (int slice = s.first; slice <= s.last; ++slice) {
         for (int row = u.first; row <= u.last; ++row) {
-            const std::ptrdiff_t from = 64 * inBlock(0, slice) + 8 * inBlock(1, row);
+            const std::ptrdiff_t from = 64 * inBlock(0, slice) + 8 * inBlock(1, row) + firstColumn;
             const glm::ivec3 to = glm::ivec3(slice, row, v.first) - box.first;
-            const std::size_t out =
-                (std::size_t(to.x) * std::size_t(box.size.y) + std::size_t(to.y)) *
-                    std::size_t(box.size.z) +
-                std::size_t(to.z);
-            for (int column = v.first; column <= v.last; ++column) {
-                const auto in = std::size_t(from + inBlock(2, column));
-                const std::size_t place = out + std::size_t(column - v.first);
-                values_[place] = block_[in];
-                if (asksActive) active_[place] = blockActive_[in];
-            }
+            const std::ptrdiff_t out =
+                (std::ptrdiff_t{to.x} * box.size.y + to.y) * box.size.z + to.z;
+            copyRow(block_.data() + from, columns, isForward, values_.data() + out);
+            if (asksActive)
+                copyRow(blockActive_.data() + from, columns, isForward, active_.data() + out);
         }
     }
+    return isWhole ? std::size_t(s.last - s.first + 1) * std::size_t(u.last - u.first + 1) *
+                         std::size_t(columns)
+                   : 0;
 }
 
 }  // namespace deltasplat

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "rays/ray_kernels.h"
 #include "rays/ray_volume.h"
 #include "rays/sight_ray.h"
 
@@ -28,7 +29,7 @@ class PatchReader {
     const RayPatch& patch() const { return patch_; }
 
   private:
-    void addBlock(const RayAxes& axes, const PatchBox& box, const CodeBlock& block);
+    std::size_t addBlock(const RayAxes& axes, const PatchBox& box, const CodeBlock& block);
     void findTops(const PatchBox& box);
 
     const RayVolume& volume_;

@@ -36,7 +36,6 @@ PictureLines::PictureLines(const Volume& volume, const Camera& camera, int perSi
     const glm::dmat3 fromWorld = glm::inverse(linear_);
     const Camera fine = refined(camera, perSide);
     const glm::dvec3 first(volume.worldFromIndex * glm::dvec4(volume.box.min, 1));
-    direction_ = fromWorld * camera.direction;
     if (camera.projection != Projection::kOrtho) {
         rays_.emplace(fine, fromWorld);
         origin_ = fromWorld * (camera.eyeWorld() - first);
@@ -45,10 +44,15 @@ PictureLines::PictureLines(const Volume& volume, const Camera& camera, int perSi
     origin_ = fromWorld * (fine.worldFromPixel({0.5, 0.5}) - first);
     alongX_ = fine.pixelWorld() * (fromWorld * camera.right);
     alongY_ = -fine.pixelHeightWorld() * (fromWorld * camera.up);
+    first_ = lineOf(origin_, fromWorld * camera.direction);
 }
 
 PictureLine PictureLines::at(int x, int y) const {
-    if (!rays_) return lineOf(origin_ + double(x) * alongX_ + double(y) * alongY_, direction_);
+    if (first_) {
+        PictureLine line = *first_;
+        line.ray.moveTo(origin_ + double(x) * alongX_ + double(y) * alongY_);
+        return line;
+    }
     PictureLine line = lineOf(origin_, rays_->at(x, y));
     line.ray.beginAt(camera_.nearWorld / line.depthWorld);
     return line;

@@ -44,7 +44,7 @@ class PictureLines {
     glm::dvec3 origin_{0.0};
     glm::dvec3 alongX_{0.0};
     glm::dvec3 alongY_{0.0};
-    glm::dvec3 direction_{0.0};
+    std::optional<PictureLine> first_;
 };
 
 /// Returns how many lines of sight a pixel needs along each side: one where pixels are no larger

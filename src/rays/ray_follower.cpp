@@ -14,16 +14,21 @@ constexpr double kMostVoxels = 128 * 128;
 // Of a voxel: means of less are made of rounding.
 constexpr double kLeastShare = 0x1p-10;
 
+// Bundles that are followed through the same layers: 8x8 lines.
+constexpr std::size_t kGroupBundles = 8;
+constexpr std::size_t kGroupLines = kGroupBundles * kRayBundle;
+
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
 // A slice of a patch where a ray of which only a part is seen meets it.
 struct CutSlice {
     const RayPatch& patch;
-    const float* values;  // of the slice
+    const float* values;  // of the slice; null: 1
     const PatchBox& box;
     const SightRay& ray;
 
     double at(int u, int v) const {
+        if (!values) return 1;
         u = std::clamp(u - box.first.y, 0, box.size.y - 1);
         v = std::clamp(v - box.first.z, 0, box.size.z - 1);
         return double(values[std::ptrdiff_t{u} * patch.sizeV + v]);
@@ -73,8 +78,10 @@ struct CutSlice {
 
 // Returns how far a position lies behind a whole voxel, which is counted from `first`.
 float behindWhole(double position, int first, std::int32_t& whole) {
-    const double below = std::floor(position);
-    whole = std::int32_t(std::clamp(below - first, -1e9, 1e9));
+    position = std::clamp(position, -1e9, 1e9);
+    auto below = std::int32_t(position);
+    below -= position < below;
+    whole = below - first;
     return float(position - below);
 }
 
@@ -122,56 +129,120 @@ void RayFollower::gather(std::span<const SightRay> rays) {
         values->resize(alike_.rays.size());
     alike_.slopesU.resize(alike_.rays.size());
     alike_.slopesV.resize(alike_.rays.size());
-    alike_.slices.assign(bundles, {std::numeric_limits<double>::infinity(), -1});
     for (std::size_t i = 0; i < alike_.rays.size(); ++i) {
         const SightRay& ray = rays[alike_.rays[i]];
         alike_.startU[i] = ray.start.x;
         alike_.startV[i] = ray.start.y;
         alike_.slopeU[i] = ray.slope.x;
         alike_.slopeV[i] = ray.slope.y;
-        alike_.begins[i] = isExtreme() ? ray.nearest : firstWhole(ray);
+        alike_.begins[i] = isExtreme(rule_) ? ray.nearest : firstWhole(ray);
         alike_.slopesU[i] = float(ray.slope.x);
         alike_.slopesV[i] = float(ray.slope.y);
-        glm::dvec2& slices = alike_.slices[i / kRayBundle];
-        slices = {std::min(slices.x, ray.slices.x), std::max(slices.y, ray.slices.y)};
     }
-    sums_.reset(alike_.rays.size(), isExtreme() ? kNothing : 0.0f);
+    sums_.reset(alike_.rays.size(), isExtreme(rule_) ? kNothing : 0.0f);
     if (rule_ == RayRule::kMean) shares_.reset(alike_.rays.size(), 0.0f);
     for (std::vector<float>* values : {&u_, &v_, &firstSlice_}) values->resize(alike_.rays.size());
     wholeU_.resize(alike_.rays.size());
     wholeV_.resize(alike_.rays.size());
+    groups_.assign((bundles + kGroupBundles - 1) / kGroupBundles, {});
+    for (std::size_t i = 0; i < alike_.rays.size(); ++i)
+        groups_[i / kGroupLines].addSlices(rays[alike_.rays[i]].slices);
+    for (std::size_t i = 0; i < alike_.rays.size(); ++i) {
+        const SightRay& ray = rays[alike_.rays[i]];
+        groups_[i / kGroupLines].addLine(ray.start, ray.slope);
+    }
+}
+
+// Lists the layers of blocks that lines meet, and what groups may find in each.
+void RayFollower::listLayers() {
+    double from = axes_.count.x;
+    double to = -1;
+    for (const Group& group : groups_) {
+        from = std::min(from, group.slices().x);
+        to = std::max(to, group.slices().y);
+    }
+    const std::vector<int>& blocks = volume_.layers[std::size_t(axes_.order[0])];
+    layers_.clear();
+    for (std::size_t n = 0; n < blocks.size(); ++n) {
+        const int block = blocks[axes_.sign.x > 0 ? n : blocks.size() - 1 - n];
+        const int a = axes_.sign.x * (8 * block - axes_.first.x);
+        const int b = axes_.sign.x * (8 * block + 7 - axes_.first.x);
+        const glm::ivec2 slices(std::max(std::min(a, b), 0),
+                                std::min(std::max(a, b), axes_.count.x - 1));
+        if (slices.x > to + 1) break;
+        if (slices.y >= from - 1) layers_.push_back({block, slices});
+    }
+    tops_.clear();
+    for (Group& group : groups_) {
+        float best = kNothing;
+        for (std::size_t n = 0; n < layers_.size(); ++n) {
+            tops_.push_back(group.meets(layers_[n]) ? group.topOf(volume_.tops, axes_, layers_[n])
+                                                    : kNothing);
+            if (tops_.back() > best) group.best = n;
+            best = std::max(best, tops_.back());
+        }
+    }
+}
+
+// Whether a group may find something in a layer that it has not been followed through: of largest
+// values more than before, or as much at a nearer place.
+bool RayFollower::mayFind(std::size_t group, std::size_t layer) const {
+    const float top = tops_[group * layers_.size() + layer];
+    if (top == kNothing || !isExtreme(rule_)) return top != kNothing;
+    const Group& one = groups_[group];
+    if (one.best == layer) return false;
+    return !one.areMet || top > one.least ||
+           (top == one.least && float(layers_[layer].slices.x - 1) < one.farthest);
 }
 
 void RayFollower::followAlike(std::span<const SightRay> rays, std::span<RayFound> found) {
-    const std::size_t count = alike_.rays.size();
     gather(rays);
-    double from = axes_.count.x;
-    double to = -1;
-    for (const glm::dvec2& slices : alike_.slices) {
-        from = std::min(from, slices.x);
-        to = std::max(to, slices.y);
-    }
-    const std::vector<int>& layers = volume_.layers[std::size_t(axes_.order[0])];
-    int before = -2;
-    for (std::size_t n = 0; n < layers.size(); ++n) {
-        const int layer = layers[axes_.sign.x > 0 ? n : layers.size() - 1 - n];
-        const int a = axes_.sign.x * (8 * layer - axes_.first.x);
-        const int b = axes_.sign.x * (8 * layer + 7 - axes_.first.x);
-        glm::ivec2 slices(std::max(std::min(a, b), 0), std::min(std::max(a, b), axes_.count.x - 1));
-        if (slices.x > to + 1) break;
-        if (slices.y < from - 1) continue;
-        chosen_.clear();
-        for (std::size_t bundle = 0; bundle < alike_.slices.size(); ++bundle) {
-            const glm::dvec2& own = alike_.slices[bundle];
-            if (own.y > slices.x - 1 && own.x < slices.y + 1) chosen_.push_back(bundle);
+    listLayers();
+    if (isExtreme(rule_)) {
+        // What is found where the largest values are spares most of the others.
+        for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
+            chosen_.clear();
+            for (std::size_t group = 0; group < groups_.size(); ++group)
+                if (groups_[group].best == layer) chosen_.push_back(group);
+            addLayer(rays, layers_[layer]);
         }
-        const int last = slices.y;
-        // Largest values are looked for between slices, too, also before and behind what is there.
-        if (isExtreme()) slices = {before == slices.x - 1 ? slices.x : slices.x - 1, slices.y + 1};
-        if (!chosen_.empty()) addSlices(rays, chosen_, slices);
-        before = last;
     }
-    for (std::size_t i = 0; i < count; ++i) found[alike_.rays[i]] = foundAt(i);
+    for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
+        chosen_.clear();
+        for (std::size_t group = 0; group < groups_.size(); ++group)
+            if (mayFind(group, layer)) chosen_.push_back(group);
+        addLayer(rays, layers_[layer]);
+    }
+    for (std::size_t i = 0; i < alike_.rays.size(); ++i) found[alike_.rays[i]] = foundAt(i);
+}
+
+// Follows the chosen groups through a layer.
+void RayFollower::addLayer(std::span<const SightRay> rays, const BlockLayer& layer) {
+    if (chosen_.empty()) return;
+    bundles_.clear();
+    for (const std::size_t group : chosen_) {
+        const std::size_t last =
+            std::min((group + 1) * kGroupBundles, alike_.rays.size() / kRayBundle);
+        for (std::size_t bundle = group * kGroupBundles; bundle < last; ++bundle)
+            bundles_.push_back(bundle);
+    }
+    // Largest values are looked for between slices, too, also before and behind what is there.
+    const int around = isExtreme(rule_) ? 1 : 0;
+    addSlices(rays, bundles_, layer.slices + glm::ivec2(-around, around));
+    if (!isExtreme(rule_)) return;
+    for (const std::size_t group : chosen_) update(groups_[group], group);
+}
+
+void RayFollower::update(Group& group, std::size_t number) const {
+    group.least = std::numeric_limits<float>::infinity();
+    group.farthest = kNothing;
+    group.areMet = true;
+    const std::size_t last = std::min((number + 1) * kGroupLines, alike_.rays.size());
+    for (std::size_t i = number * kGroupLines; i < last; ++i) {
+        group.least = std::min(group.least, sums_.found[i]);
+        group.farthest = std::max(group.farthest, sums_.rest[i]);
+        group.areMet = group.areMet && sums_.met[i] > 0;
+    }
 }
 
 RayFound RayFollower::foundAt(std::size_t i) const {
@@ -258,7 +329,7 @@ PatchBox RayFollower::boxOf(Bundles bundles, const glm::ivec2& slices) const {
 }
 
 void RayFollower::addPatch(std::span<const SightRay> rays, Bundles bundles, const PatchBox& box) {
-    RayPatch patch = reader_.read(axes_, box);
+    const RayPatch& patch = reader_.read(axes_, box);
     for (const std::size_t bundle : bundles) {
         const std::size_t first = kRayBundle * bundle;
         for (std::size_t i = first; i < first + kRayBundle; ++i) {
@@ -269,28 +340,26 @@ void RayFollower::addPatch(std::span<const SightRay> rays, Bundles bundles, cons
             firstSlice_[i] = float(alike_.begins[i] - box.first.x);
         }
     }
-    if (!isExtreme()) addCuts(rays, bundles, box);
-    const auto run = [&](Sums& sums) {
-        RayRun lines;
-        lines.bundles = bundles.data();
-        lines.count = bundles.size();
-        lines.wholeU = wholeU_.data();
-        lines.wholeV = wholeV_.data();
-        lines.u = u_.data();
-        lines.v = v_.data();
-        lines.slopeU = alike_.slopesU.data();
-        lines.slopeV = alike_.slopesV.data();
-        lines.firstSlice = firstSlice_.data();
-        lines.found = sums.found.data();
-        lines.rest = sums.rest.data();
-        lines.met = sums.met.data();
-        lines.depth = float(box.first.x);
-        isExtreme() ? maxSlices(patch, lines) : sumSlices(patch, lines);
-    };
-    run(sums_);
-    if (rule_ != RayRule::kMean) return;
-    patch.values = patch.active;
-    run(shares_);
+    if (!isExtreme(rule_)) addCuts(rays, bundles, box);
+    RayRun lines;
+    lines.bundles = bundles.data();
+    lines.count = bundles.size();
+    lines.wholeU = wholeU_.data();
+    lines.wholeV = wholeV_.data();
+    lines.u = u_.data();
+    lines.v = v_.data();
+    lines.slopeU = alike_.slopesU.data();
+    lines.slopeV = alike_.slopesV.data();
+    lines.firstSlice = firstSlice_.data();
+    lines.found = sums_.found.data();
+    lines.rest = sums_.rest.data();
+    lines.met = sums_.met.data();
+    lines.depth = float(box.first.x);
+    if (rule_ == RayRule::kMean) {
+        lines.share = shares_.found.data();
+        lines.shareRest = shares_.rest.data();
+    }
+    isExtreme(rule_) ? maxSlices(patch, lines) : sumSlices(patch, lines);
 }
 
 // Adds what lines have of slices of which they see a part.
@@ -312,7 +381,7 @@ void RayFollower::addCut(const SightRay& ray, std::size_t i, const PatchBox& box
         const std::ptrdiff_t at = (slice - box.first.x) * patch.sliceStep;
         const double from = std::max(ray.nearest, slice - 1.0);
         const auto addTo = [&](const float* values, Sums& sums) {
-            const CutSlice cut{patch, values + at, box, ray};
+            const CutSlice cut{patch, values ? values + at : nullptr, box, ray};
             sums.found[i] += float(cut.from(slice, from));
         };
         addTo(patch.values, sums_);

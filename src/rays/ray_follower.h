@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "rays/line_group.h"
 #include "rays/patch_reader.h"
 #include "rays/sight_ray.h"
 
@@ -43,12 +44,22 @@ class RayFollower {
         std::vector<double> startU, startV, slopeU, slopeV;
         std::vector<double> begins;  // the first slice that is seen as a whole, or where they begin
         std::vector<float> slopesU, slopesV;
-        std::vector<glm::dvec2> slices;  // of each bundle, as SightRay has them
+    };
+    /// Bundles beside each other, and of largest values what all of their lines have found.
+    struct Group : LineGroup {
+        float least = 0;
+        float farthest = 0;  // where
+        bool areMet = false;
+        std::size_t best = 0;  // layer that holds the largest values
     };
     using Bundles = std::span<const std::size_t>;
 
     void gather(std::span<const SightRay> rays);
     void followAlike(std::span<const SightRay> rays, std::span<RayFound> found);
+    void listLayers();
+    bool mayFind(std::size_t group, std::size_t layer) const;
+    void addLayer(std::span<const SightRay> rays, const BlockLayer& layer);
+    void update(Group& group, std::size_t number) const;
     void addSlices(std::span<const SightRay> rays, Bundles bundles, const glm::ivec2& slices);
     void addOneByOne(std::span<const SightRay> rays, std::size_t bundle, const glm::ivec2& slices);
     PatchBox boxOf(Bundles bundles, const glm::ivec2& slices) const;
@@ -56,15 +67,18 @@ class RayFollower {
     void addCuts(std::span<const SightRay> rays, Bundles bundles, const PatchBox& box);
     void addCut(const SightRay& ray, std::size_t i, const PatchBox& box);
     RayFound foundAt(std::size_t i) const;
-    bool isExtreme() const { return rule_ == RayRule::kMax || rule_ == RayRule::kMaxActive; }
 
     const RayVolume& volume_;
     RayRule rule_;
     PatchReader reader_;
     RayAxes axes_;
     Alike alike_;
-    std::vector<std::size_t> chosen_;  // bundles that meet some slices
-    Sums sums_, shares_;               // of `alike_`; of means also the shares of active voxels
+    std::vector<Group> groups_;
+    std::vector<BlockLayer> layers_;    // in the order in which lines meet them
+    std::vector<float> tops_;           // of each group of each layer
+    std::vector<std::size_t> chosen_;   // groups that are followed through a layer
+    std::vector<std::size_t> bundles_;  // theirs
+    Sums sums_, shares_;                // of `alike_`; of means also the shares of active voxels
     std::vector<std::int32_t> wholeU_, wholeV_;
     std::vector<float> u_, v_, firstSlice_;
 };

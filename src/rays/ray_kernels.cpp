@@ -19,82 +19,6 @@ namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using EightTag = hn::CappedTag<float, 8>;
-using CodeTag = hn::FixedTag<Code, 8>;
-
-// Mirrors 8x8 codes at their diagonal; rows of `in` and `out` lie this far apart.
-HWY_INLINE void transposeCodes(const Code* in, std::size_t inStep, Code* out, std::size_t outStep) {
-    const CodeTag tag;
-    const hn::RepartitionToWide<CodeTag> pairs;
-    const hn::RepartitionToWide<decltype(pairs)> fours;
-    const auto load = [&](int row) { return hn::LoadU(tag, in + row * inStep); };
-    // After each step, runs of twice as many codes of one column are together.
-    const auto four = [&](int row, auto& low, auto& high) {
-        const auto a = load(row), b = load(row + 1), c = load(row + 2), d = load(row + 3);
-        const auto abLow = hn::BitCast(pairs, hn::InterleaveLower(tag, a, b));
-        const auto abHigh = hn::BitCast(pairs, hn::InterleaveUpper(tag, a, b));
-        const auto cdLow = hn::BitCast(pairs, hn::InterleaveLower(tag, c, d));
-        const auto cdHigh = hn::BitCast(pairs, hn::InterleaveUpper(tag, c, d));
-        low[0] = hn::BitCast(fours, hn::InterleaveLower(pairs, abLow, cdLow));
-        low[1] = hn::BitCast(fours, hn::InterleaveUpper(pairs, abLow, cdLow));
-        high[0] = hn::BitCast(fours, hn::InterleaveLower(pairs, abHigh, cdHigh));
-        high[1] = hn::BitCast(fours, hn::InterleaveUpper(pairs, abHigh, cdHigh));
-    };
-    hn::Vec<decltype(fours)> topLow[2], topHigh[2], bottomLow[2], bottomHigh[2];
-    four(0, topLow, topHigh);
-    four(4, bottomLow, bottomHigh);
-    const auto store = [&](int row, auto top, auto bottom) {
-        hn::StoreU(hn::BitCast(tag, hn::InterleaveLower(fours, top, bottom)), tag,
-                   out + row * outStep);
-        hn::StoreU(hn::BitCast(tag, hn::InterleaveUpper(fours, top, bottom)), tag,
-                   out + (row + 1) * outStep);
-    };
-    for (int half = 0; half < 2; ++half) {
-        store(2 * half, topLow[half], bottomLow[half]);
-        store(4 + 2 * half, topHigh[half], bottomHigh[half]);
-    }
-}
-
-// Puts the codes of a leaf into (slice, u, v) order.
-HWY_INLINE const Code* inSliceOrder(const Code* codes, int sliceAxis, Code* ordered) {
-    if (sliceAxis == 0) return codes;
-    for (std::size_t i = 0; i < 8; ++i) {
-        if (sliceAxis == 1) {
-            transposeCodes(codes + 8 * i, 64, ordered + 64 * i, 8);
-        } else {
-            transposeCodes(codes + 64 * i, 8, ordered + 8 * i, 64);
-        }
-    }
-    return ordered;
-}
-
-template <bool kDirect>
-HWY_INLINE void storeValues(const Code* codes, const CodeValues& values, const BlockPlace& place) {
-    const EightTag tag;
-    const hn::Rebind<std::int32_t, EightTag> wide;
-    const hn::Rebind<Code, EightTag> narrow;
-    const auto offset = hn::Set(tag, values.offset);
-    for (std::size_t slice = 0; slice < 8; ++slice) {
-        for (std::size_t u = 0; u < 8; ++u, codes += 8) {
-            float* out = place.first + slice * place.sliceStep + u * place.rowStep;
-            for (std::size_t v = 0; v < 8; v += hn::Lanes(tag)) {
-                const auto code = hn::PromoteTo(wide, hn::LoadU(narrow, codes + v));
-                if constexpr (kDirect) {
-                    hn::StoreU(hn::Add(hn::ConvertTo(tag, code), offset), tag, out + v);
-                } else {
-                    hn::StoreU(hn::GatherIndex(tag, values.table, code), tag, out + v);
-                }
-            }
-        }
-    }
-}
-
-void readBlockValuesKernel(const Code* codes, int sliceAxis, const CodeValues& values,
-                           const BlockPlace& place) {
-    HWY_ALIGN Code ordered[512];
-    const Code* const from = inSliceOrder(codes, sliceAxis, ordered);
-    values.direct ? storeValues<true>(from, values, place)
-                  : storeValues<false>(from, values, place);
-}
 
 using IntTag = hn::RebindToSigned<EightTag>;
 
@@ -267,6 +191,40 @@ HWY_INLINE Reading<V> readingAt(const RayPatch& patch, const RayRun& rays, std::
     return reading;
 }
 
+// A sum, and what rounding has added to it, which is taken off with what is added next.
+template <class V>
+struct Sum {
+    V sum, rest;
+
+    HWY_INLINE void add(V value) {
+        const auto more = hn::Sub(value, rest);
+        const auto next = hn::Add(sum, more);
+        rest = hn::Sub(hn::Sub(next, sum), more);
+        sum = next;
+    }
+};
+
+// What rays have of a slice, whose moments are known.
+template <int kU, int kV, class V>
+HWY_INLINE V integral(const float* values, int sizeV, const std::int32_t* offsets,
+                      const V (*m)[4]) {
+    V g[4][4];
+    for (int row = 0; row < kU; ++row) {
+        const Fours<V> fours = loadFours(values + row * std::ptrdiff_t{sizeV}, offsets);
+        for (int column = 0; column < kV; ++column) g[column][row] = fours.at[column];
+    }
+    for (int column = 0; column < kV; ++column) takeDifferences<kU>(g[column]);
+    auto read = hn::Zero(EightTag());
+    for (int row = 0; row < kU; ++row) {
+        V along[4];
+        for (int column = 0; column < kV; ++column) along[column] = g[column][row];
+        takeDifferences<kV>(along);
+        for (int column = 0; column < kV; ++column)
+            read = hn::Add(read, hn::Mul(along[column], m[row][column]));
+    }
+    return read;
+}
+
 template <int kU, int kV>
 HWY_INLINE void sumRays(const RayPatch& patch, const RayRun& rays, std::size_t i) {
     const EightTag tag;
@@ -281,39 +239,30 @@ HWY_INLINE void sumRays(const RayPatch& patch, const RayRun& rays, std::size_t i
     const auto inverseU = inverse(slopeU);
     const auto inverseV = inverse(slopeV);
     const auto firstSlice = hn::LoadU(tag, rays.firstSlice + i);
-    auto sum = hn::LoadU(tag, rays.found + i);
-    auto rest = hn::LoadU(tag, rays.rest + i);
-    const float* values = patch.values;
-    for (int s = 0; s < patch.slices; ++s, values += patch.sliceStep) {
-        const auto slice = hn::Set(tag, float(s));
+    Sum<V> sum{hn::LoadU(tag, rays.found + i), hn::LoadU(tag, rays.rest + i)};
+    Sum<V> share{hn::Zero(tag), hn::Zero(tag)};
+    if (rays.share) share = {hn::LoadU(tag, rays.share + i), hn::LoadU(tag, rays.shareRest + i)};
+    for (int s = 0; s < patch.slices; ++s) {
+        const auto counts = hn::Ge(hn::Set(tag, float(s)), firstSlice);
         // From the slice before, where the slice's tent begins.
         const auto begin = hn::Set(tag, float(s - 1));
         const Reading<V> at = readingAt(patch, rays, i, begin, slopeU, slopeV);
-        V g[4][4];
-        for (int row = 0; row < kU; ++row) {
-            const Fours<V> fours = loadFours(values + row * patch.sizeV, at.offsets);
-            for (int column = 0; column < kV; ++column) g[column][row] = fours.at[column];
-        }
         V m[4][4];
         takeMoments<kU, kV>({at.u, slopeU, inverseU}, {at.v, slopeV, inverseV}, m);
-        for (int column = 0; column < kV; ++column) takeDifferences<kU>(g[column]);
-        auto read = hn::Zero(tag);
-        for (int row = 0; row < kU; ++row) {
-            V along[4];
-            for (int column = 0; column < kV; ++column) along[column] = g[column][row];
-            takeDifferences<kV>(along);
-            for (int column = 0; column < kV; ++column)
-                read = hn::Add(read, hn::Mul(along[column], m[row][column]));
-        }
-        read = hn::IfThenElseZero(hn::Ge(slice, firstSlice), read);
-        // What rounding adds is kept and taken off with the next slice.
-        const auto more = hn::Sub(read, rest);
-        const auto next = hn::Add(sum, more);
-        rest = hn::Sub(hn::Sub(next, sum), more);
-        sum = next;
+        const std::ptrdiff_t slice = s * patch.sliceStep;
+        sum.add(hn::IfThenElseZero(
+            counts, integral<kU, kV>(patch.values + slice, patch.sizeV, at.offsets, m)));
+        if (!rays.share) continue;
+        const auto active = patch.active
+                                ? integral<kU, kV>(patch.active + slice, patch.sizeV, at.offsets, m)
+                                : hn::Set(tag, 1.0f);
+        share.add(hn::IfThenElseZero(counts, active));
     }
-    hn::StoreU(sum, tag, rays.found + i);
-    hn::StoreU(rest, tag, rays.rest + i);
+    hn::StoreU(sum.sum, tag, rays.found + i);
+    hn::StoreU(sum.rest, tag, rays.rest + i);
+    if (!rays.share) return;
+    hn::StoreU(share.sum, tag, rays.share + i);
+    hn::StoreU(share.rest, tag, rays.shareRest + i);
 }
 
 // Calls use(i) for the vectors of bundles, of which `i` is the first line.
@@ -427,6 +376,17 @@ HWY_INLINE V largestOf(const Cells<V>& cells, const Cells<V>* active) {
     return largest;
 }
 
+// Where all of the cells are active.
+template <class V>
+HWY_INLINE auto areWhole(const Cells<V>& active) {
+    auto least = active.at[0][0][0];
+    for (int slice = 0; slice < 2; ++slice)
+        for (int row = 0; row < 3; ++row)
+            for (int column = 0; column < 3; ++column)
+                least = hn::Min(least, active.at[slice][row][column]);
+    return hn::Eq(least, hn::Set(EightTag(), 1.0f));
+}
+
 // What has less of a voxel than this has it by rounding alone.
 constexpr float kLeastShare = 0x1p-20f;
 
@@ -448,45 +408,51 @@ HWY_INLINE void maxBetween(const RayPatch& patch, const RayRun& rays, std::size_
     const auto slopeV = hn::LoadU(tag, rays.slopeV + i);
     const auto number = hn::Set(tag, float(slice));
     const Reading<V> at = readingAt(patch, rays, i, number, slopeU, slopeV);
+    const auto depth = hn::Set(tag, rays.depth + float(slice));
     auto largest = hn::LoadU(tag, rays.found + i);
     auto met = hn::LoadU(tag, rays.met + i);
+    auto place = hn::LoadU(tag, rays.rest + i);
     const bool allMet = hn::AllTrue(tag, hn::Gt(met, hn::Zero(tag)));
-    if (allMet && hn::AllFalse(tag, hn::Gt(topsAt<V>(patch, at, slice), largest))) return;
+    // More, or as much at a nearer place, which is the one that is seen.
+    const auto isBetter = [&](V value, V at) {
+        return hn::Or(hn::Gt(value, largest), hn::And(hn::Eq(value, largest), hn::Lt(at, place)));
+    };
+    if (allMet && hn::AllFalse(tag, isBetter(topsAt<V>(patch, at, slice), depth))) return;
     const std::ptrdiff_t first = slice * patch.sliceStep;
     Cells<V> values, active;
     loadCells(patch.values + first, patch, at.offsets, values);
-    const bool isWhole = patch.active == nullptr;
-    const bool readsActive = !isWhole && (patch.leavesOut || !allMet);
+    const bool readsActive = patch.active && (patch.leavesOut || !allMet);
     if (readsActive) loadCells(patch.active + first, patch, at.offsets, active);
     // For each line by itself, so that what is found does not depend on the number of lanes.
-    const auto above =
-        hn::Gt(largestOf(values, patch.leavesOut && readsActive ? &active : nullptr), largest);
-    if (allMet && hn::AllFalse(tag, above)) return;
+    const auto top = largestOf(values, patch.leavesOut ? &active : nullptr);
+    const auto mayFind = isBetter(top, depth);
+    if (allMet && hn::AllFalse(tag, mayFind)) return;
+    const auto one = hn::Set(tag, 1.0f);
     const auto firstSlice = hn::LoadU(tag, rays.firstSlice + i);
-    auto place = hn::LoadU(tag, rays.rest + i);
     for (int step = 0; step < kRaySteps; ++step) {
         const auto way = hn::Set(tag, float(step) / kRaySteps);
-        const auto depth = hn::Add(number, way);
         V sharesU[3], sharesV[3];
         takeShares(hn::Add(at.u, hn::Mul(way, slopeU)), sharesU);
         takeShares(hn::Add(at.v, hn::Mul(way, slopeV)), sharesV);
-        auto counts = hn::Ge(depth, firstSlice);
+        auto counts = hn::Ge(hn::Add(number, way), firstSlice);
         auto value = readCells(values, sharesU, sharesV, way);
+        auto isSeen = counts;
         if (readsActive) {
             const auto share = readCells(active, sharesU, sharesV, way);
-            const auto isSeen = hn::Gt(share, hn::Set(tag, kLeastShare));
-            met = hn::IfThenElse(hn::And(isSeen, counts), hn::Set(tag, 1.0f), met);
+            isSeen = hn::And(hn::Gt(share, hn::Set(tag, kLeastShare)), counts);
             if (patch.leavesOut) {
-                counts = hn::And(counts, isSeen);
-                value = hn::Div(value, hn::IfThenElse(isSeen, share, hn::Set(tag, 1.0f)));
+                counts = isSeen;
+                value = hn::Div(value,
+                                hn::IfThenElse(hn::AndNot(areWhole(active), isSeen), share, one));
             }
-        } else if (isWhole) {
-            met = hn::IfThenElse(counts, hn::Set(tag, 1.0f), met);
         }
-        // Of equal values the nearest is the one that is seen.
-        const auto larger = hn::And(hn::And(counts, above), hn::Gt(value, largest));
-        largest = hn::IfThenElse(larger, value, largest);
-        place = hn::IfThenElse(larger, hn::Add(hn::Set(tag, rays.depth), depth), place);
+        if (readsActive || !patch.active) met = hn::IfThenElse(isSeen, one, met);
+        // Rounding makes nothing larger than what it is made of: what is skipped is nothing else.
+        value = hn::Min(value, top);
+        const auto here = hn::Add(depth, way);
+        const auto better = hn::And(hn::And(counts, mayFind), isBetter(value, here));
+        largest = hn::IfThenElse(better, value, largest);
+        place = hn::IfThenElse(better, here, place);
     }
     hn::StoreU(largest, tag, rays.found + i);
     hn::StoreU(met, tag, rays.met + i);
@@ -506,14 +472,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace deltasplat {
 
-HWY_EXPORT(readBlockValuesKernel);
 HWY_EXPORT(sumSlicesKernel);
 HWY_EXPORT(maxSlicesKernel);
-
-void readBlockValues(const Code* codes, int sliceAxis, const CodeValues& values,
-                     const BlockPlace& place) {
-    HWY_DYNAMIC_DISPATCH(readBlockValuesKernel)(codes, sliceAxis, values, place);
-}
 
 void sumSlices(const RayPatch& patch, const RayRun& rays) {
     HWY_DYNAMIC_DISPATCH(sumSlicesKernel)(patch, rays);

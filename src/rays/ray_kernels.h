@@ -4,27 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "deltasplat/ingest/code_book.h"
-
 namespace deltasplat {
-
-/// Turns codes into values.
-struct CodeValues {
-    const float* table = nullptr;  ///< [kCodeCount]
-    float offset = 0;              ///< value = code + offset, if `direct`
-    bool direct = false;           ///< exact, and faster than the table
-};
-
-/// Where the values of an 8x8x8 block go: [slice][u][v], eight values along v side by side.
-struct BlockPlace {
-    float* first;
-    std::size_t sliceStep;
-    std::size_t rowStep;
-};
-
-/// Reads the 512 codes of a leaf (x slowest, z fastest) as values, in (slice, u, v) order.
-void readBlockValues(const Code* codes, int sliceAxis, const CodeValues& values,
-                     const BlockPlace& place);
 
 /// Some slices of a volume as floats, `[slices][sizeU][sizeV]`, and four values more, around lines
 /// of sight that go towards larger positions along every axis.
@@ -66,6 +46,9 @@ struct RayRun {
     float* rest;              ///< how much a sum is too large; where a largest value is, in slices
     float* met;               ///< of largest values: 1 where an active voxel has been met, else 0
     float depth = 0;          ///< the first slice's, that places are counted on from
+    /// Of means: as `found` and `rest`, the sum of 1 where voxels are active; else null.
+    float* share = nullptr;
+    float* shareRest = nullptr;
 };
 
 inline constexpr std::size_t kRayBundle = 8;

@@ -2,15 +2,20 @@
 #include "rays/ray_volume.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
+#include "bit_matrix.h"
 #include "delta/block_windows.h"
 #include "ingest/codes/leaf_slices.h"
 #include "ingest/delta/delta_origin.h"
 #include "ingest/grids/source_grid.h"
+#include "parallel.h"
 
 namespace deltasplat {
 namespace {
+
+constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
 float floatOf(double value) {
     return float(std::clamp(value, -kLargestRayValue, kLargestRayValue));
@@ -53,14 +58,14 @@ std::vector<Slot> readValues(const Volume& volume, RayRule rule, const ValueMap&
 }
 
 template <typename Leaf>
-void placeValues(const Leaf& leaf, int sliceAxis, const ValueMap& map, const BlockPlace& place) {
+void placeValues(const Leaf& leaf, int sliceAxis, const ValueMap& map, const ValuePlace& place) {
     forLeafVoxels(sliceAxis, [&](const glm::ivec3& at, int n) {
         place.first[std::size_t(at.x) * place.sliceStep + std::size_t(at.y) * place.rowStep +
                     std::size_t(at.z)] = floatOf(map(double(leaf.getValue(openvdb::Index(n)))));
     });
 }
 
-void placeValue(float value, const BlockPlace& place) {
+void placeValue(float value, const ValuePlace& place) {
     for (std::size_t slice = 0; slice < 8; ++slice) {
         for (std::size_t u = 0; u < 8; ++u)
             std::fill_n(place.first + slice * place.sliceStep + u * place.rowStep, 8, value);
@@ -79,7 +84,7 @@ void readSource(const Volume& volume, RayRule rule, const ValueMap& map, std::ve
         slots[code + 1] = volume.histogram[code] > 0 ? Slot(code + 1) : kEmptySlot;
     volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
         rays.sourceValues = [&tree, map](const CodeBlock& block, int axis,
-                                         const BlockPlace& place) {
+                                         const ValuePlace& place) {
             const openvdb::Coord origin = blockOrigin(block.position, 0);
             const auto* const leaf = tree.probeConstLeaf(origin);
             leaf ? placeValues(*leaf, axis, map, place)
@@ -99,6 +104,27 @@ void dropZeros(const Volume& volume, const ValueMap& map, std::vector<CodeBlock>
     });
 }
 
+// A word for each slice of a block: bit 8 * u + v is set where the voxel is active.
+using ActiveWords = std::array<std::uint64_t, 8>;
+
+ActiveWords activeWords(const CodeTree::Leaf& leaf, int sliceAxis) {
+    ActiveWords words{};
+    const auto& mask = leaf.getValueMask();
+    for (int x = 0; x < 8; ++x) {
+        const auto word = mask.getWord<std::uint64_t>(openvdb::Index(x));  // bit 8 * y + z
+        const std::uint64_t turned = sliceAxis == 2 ? transposedBits(word) : 0;
+        for (std::size_t i = 0; i < 8; ++i) {
+            if (sliceAxis == 1) words[i] |= (word >> (8 * i) & 0xFF) << (8 * x);  // bit 8 * x + z
+            if (sliceAxis == 2) words[i] |= (turned >> (8 * i) & 0xFF) << (8 * x);
+        }
+        if (sliceAxis == 0) words[std::size_t(x)] = word;
+    }
+    if (sliceAxis == 1) {
+        for (std::uint64_t& word : words) word = transposedBits(word);
+    }
+    return words;
+}
+
 // Lists at which numbers of blocks there are any, along each axis.
 void listLayers(RayVolume& rays) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -112,6 +138,55 @@ void listLayers(RayVolume& rays) {
     }
 }
 
+// What codes between two stand for at most, of those that the volume has.
+class CodeTops {
+  public:
+    CodeTops(const Volume& volume, const RayVolume& rays)
+        : upTo_(kCodeCount, kNothing), from_(kCodeCount, kNothing) {
+        const auto topOf = [&](std::size_t code) {
+            return volume.histogram[code] > 0 ? rays.valueOf(Code(code)) : kNothing;
+        };
+        float top = kNothing;
+        for (std::size_t code = 0; code < kCodeCount; ++code)
+            upTo_[code] = top = std::max(top, topOf(code));
+        top = kNothing;
+        for (std::size_t code = kCodeCount; code-- > 0;)
+            from_[code] = top = std::max(top, topOf(code));
+    }
+    float topOf(Code lowest, Code highest) const { return std::min(from_[lowest], upTo_[highest]); }
+
+  private:
+    std::vector<float> upTo_, from_;
+};
+
+float topOfSource(const RayVolume& rays, const CodeBlock& block) {
+    std::array<float, 512> values, active;
+    readBlock(rays, block, 0, values.data(), active.data());
+    float top = kNothing;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (active[i] > 0) top = std::max(top, values[i]);
+    return top;
+}
+
+void findTops(const Volume& volume, RayRule rule, RayVolume& rays) {
+    std::vector<float> tops(rays.blocks.size(), 0.0f);
+    if (rays.sourceValues && isExtreme(rule)) {
+        parallelFor(tops.size(),
+                    [&](std::size_t i) { tops[i] = topOfSource(rays, rays.blocks[i]); });
+    } else if (isExtreme(rule)) {
+        const CodeTops codes(volume, rays);
+        for (std::size_t i = 0; i < tops.size(); ++i) {
+            const CodeBlock& block = rays.blocks[i];
+            tops[i] = block.leaf ? codes.topOf(block.lowest, block.highest)
+                                 : rays.valueOf(Code(block.tileSlot - 1));
+        }
+    }
+    // Where there is nothing `empty` is read.
+    if (rule == RayRule::kMax)
+        for (float& top : tops) top = std::max(top, rays.empty);
+    rays.tops = TopGrid(rays.blocks, tops);
+}
+
 }  // namespace
 
 RayVolume makeRayVolume(const Volume& volume, RayRule rule, const ValueMap& map) {
@@ -123,7 +198,31 @@ RayVolume makeRayVolume(const Volume& volume, RayRule rule, const ValueMap& map)
     rays.blocks = BlockReader(*volume.codes, nullptr, 0, slots).takeBlocks();
     if (fromSource && rule == RayRule::kSum) dropZeros(volume, map, rays.blocks);
     listLayers(rays);
+    findTops(volume, rule, rays);
     return rays;
+}
+
+bool readBlock(const RayVolume& volume, const CodeBlock& block, int axis, float* values,
+               float* active) {
+    const ValuePlace place{values, 64, 8};
+    if (volume.sourceValues) {
+        volume.sourceValues(block, axis, place);
+    } else if (block.leaf) {
+        readBlockValues(block.leaf->buffer().data(), axis, volume.values, place);
+    } else {
+        std::fill_n(values, 512, volume.valueOf(Code(block.tileSlot - 1)));
+    }
+    if (active) std::fill_n(active, 512, 1.0f);
+    if (!block.leaf || block.leaf->isDense()) return true;
+    const ActiveWords words = activeWords(*block.leaf, axis);
+    for (std::size_t slice = 0; slice < 8; ++slice) {
+        for (std::uint64_t off = ~words[slice]; off != 0; off &= off - 1) {
+            const std::size_t at = 64 * slice + std::size_t(std::countr_zero(off));
+            values[at] = volume.empty;
+            if (active) active[at] = 0;
+        }
+    }
+    return false;
 }
 
 }  // namespace deltasplat

@@ -9,7 +9,8 @@
 
 #include "delta/code_blocks.h"
 #include "deltasplat/ingest/volume.h"
-#include "rays/ray_kernels.h"
+#include "rays/block_kernels.h"
+#include "rays/top_grid.h"
 
 namespace deltasplat {
 
@@ -20,6 +21,10 @@ enum class RayRule {
     kMaxActive,  ///< likewise, but only active voxels take part in what is read
     kMean        ///< the mean of the active values that are met
 };
+
+inline bool isExtreme(RayRule rule) {
+    return rule == RayRule::kMax || rule == RayRule::kMaxActive;
+}
 
 /// What rays meet in place of a value.
 struct ValueMap {
@@ -38,7 +43,7 @@ inline constexpr double kLargestRayValue = double(std::numeric_limits<float>::ma
 /// Reads the 512 values of a block in the order of a slice axis; of places that are not active
 /// anything.
 using BlockValues =
-    std::function<void(const CodeBlock& block, int sliceAxis, const BlockPlace& place)>;
+    std::function<void(const CodeBlock& block, int sliceAxis, const ValuePlace& place)>;
 
 /// A volume as rays see it: float values, in blocks that can be found.
 struct RayVolume {
@@ -59,6 +64,8 @@ struct RayVolume {
 
     /// The blocks that matter, ordered by y, z and x; their positions are (x, y, z).
     std::vector<CodeBlock> blocks;
+    /// What blocks hold at most, for largest values; else 0 where there is one.
+    TopGrid tops;
     /// Along each axis the numbers of blocks, in order, at which there are any.
     std::array<std::vector<int>, 3> layers;
     std::vector<float> table;  ///< [kCodeCount], unless values are direct
@@ -66,5 +73,11 @@ struct RayVolume {
 
 /// Lists what rays meet of a volume that is not empty. The volume must outlive what is returned.
 RayVolume makeRayVolume(const Volume& volume, RayRule rule, const ValueMap& map = {});
+
+/// Reads the 512 values of a block in the order of an axis, `[slice][u][v]`.
+/// @param active  likewise 1 where a voxel is active, else 0; may be null
+/// @return whether all are active
+bool readBlock(const RayVolume& volume, const CodeBlock& block, int axis, float* values,
+               float* active);
 
 }  // namespace deltasplat

@@ -30,16 +30,23 @@ double snapped(double slope) {
 
 SightRay::SightRay(const IndexBox& box, const glm::dvec3& through, const glm::dvec3& ray) {
     axes.order = sliceOrder(mostParallelAxis(ray));
-    glm::dvec3 point;
     for (int i = 0; i < 3; ++i) {
         const int axis = axes.order[i];
         axes.sign[i] = ray[axis] < 0 ? -1 : 1;
         axes.first[i] = ray[axis] < 0 ? box.max[axis] : box.min[axis];
         axes.count[i] = box.max[axis] - box.min[axis] + 1;
-        point[i] = ray[axis] < 0 ? axes.count[i] - 1 - through[axis] : through[axis];
     }
     const double along = std::abs(ray[axes.order[0]]);
     for (int i = 0; i < 2; ++i) slope[i] = snapped(std::abs(ray[axes.order[i + 1]]) / along);
+    moveTo(through);
+}
+
+void SightRay::moveTo(const glm::dvec3& through) {
+    glm::dvec3 point;
+    for (int i = 0; i < 3; ++i) {
+        const double at = through[axes.order[i]];
+        point[i] = axes.sign[i] < 0 ? axes.count[i] - 1 - at : at;
+    }
     point_ = point.x;
     start = glm::dvec2(point.y, point.z) - point.x * slope;
     nearest = -std::numeric_limits<double>::infinity();

@@ -35,6 +35,8 @@ struct SightRay {
     /// @param ray      of any length, in voxels
     SightRay(const IndexBox& box, const glm::dvec3& through, const glm::dvec3& ray);
 
+    /// Moves it to another point, without changing its direction.
+    void moveTo(const glm::dvec3& through);
     /// Makes it begin at so many slices from the point that it was made with.
     void beginAt(double slicesFromPoint);
     double slicesFromPoint(double slice) const { return slice - point_; }

@@ -11,6 +11,7 @@
 
 #include "deltasplat/ingest/slot.h"
 #include "deltasplat/simd.h"
+#include "rays/block_kernels.h"
 #include "support/simd_levels.h"
 
 namespace deltasplat {

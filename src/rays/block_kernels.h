@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "deltasplat/ingest/code_book.h"
+
+namespace deltasplat {
+
+/// Turns codes into values.
+struct CodeValues {
+    const float* table = nullptr;  ///< [kCodeCount]
+    float offset = 0;              ///< value = code + offset, if `direct`
+    bool direct = false;           ///< exact, and faster than the table
+};
+
+/// Where the values of an 8x8x8 block go: [slice][u][v], eight values along v side by side.
+struct ValuePlace {
+    float* first;
+    std::size_t sliceStep;
+    std::size_t rowStep;
+};
+
+/// Reads the 512 codes of a leaf (x slowest, z fastest) as values, in (slice, u, v) order.
+void readBlockValues(const Code* codes, int sliceAxis, const CodeValues& values,
+                     const ValuePlace& place);
+
+}  // namespace deltasplat
