@@ -296,6 +296,44 @@ TEST(Ome, PlanesInAnotherOrder) {
     }
 }
 
+std::string repeated(const std::string& text, int times) {
+    std::string all;
+    for (int i = 0; i < times; ++i) all += text;
+    return all;
+}
+
+TEST(Ome, TheLastBlockThatNamesAPlaneHolds) {
+    const TempFolder folder;
+    const std::string sizes = "DimensionOrder='XYCZT' SizeZ='3' SizeC='2' SizeT='1'";
+    writePages("a.tif",
+               ome(sizes,
+                   "<TiffData IFD='3' FirstZ='1' FirstC='1'/><TiffData PlaneCount='5'/>"
+                   "<TiffData IFD='5' FirstC='1'/>"
+                   "<TiffData IFD='4' PlaneCount='9' FirstZ='2'/><TiffData FirstZ='3'/>"),
+               6);
+    EXPECT_EQ(valuesIn("a.tif", 0), planesOf({0, 2, 4}));
+    EXPECT_EQ(valuesIn("a.tif", 1), planesOf({5, 3, 5}));
+}
+
+// Work and memory go by the length of the text and the number of planes; their product would be
+// 10^11 here, and the square of the length 10^13.
+TEST(Ome, TextsThatRepeatThemselves) {
+    const TempFolder folder;
+    const std::string many = "SizeZ='4000000' SizeC='1' SizeT='1'";
+    writePages("a.tif", ome(many, repeated("<TiffData/>", 30000)), 3);
+    expectRefused(
+        "a.tif: got slice 3 of no page (there are 3); expected all slices of a volume in one file, "
+        "as OME-XML describes it",
+        "a.tif");
+    writePages("b.tif", ome("SizeZ='3'", repeated("</Pixels><Pixels " + many + ">", 30000)), 3);
+    expectRefused("b.tif: got 8000003 planes; expected at most 4194304", "b.tif");
+    writePages("c.tif",
+               ome("SizeZ='3'", "<Channel Name='" + repeated("&", 3000000) + "' " + "/>" +
+                                    repeated("<TiffData/>", 30000)),
+               3);
+    EXPECT_EQ(valuesIn("c.tif"), planesOf({0, 1, 2}));
+}
+
 TEST(Ome, SizesOfVoxels) {
     const TempFolder folder;
     const auto placeOf = [](const std::string& sizes, Warnings& warnings) {

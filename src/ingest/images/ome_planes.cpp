@@ -7,11 +7,14 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
+#include <utility>
 
 #include "deltasplat/error.h"
 #include "ingest/images/xml_tags.h"
 #include "length_unit.h"
+#include "memory.h"
 #include "number_text.h"
 #include "printable.h"
 
@@ -118,29 +121,66 @@ void setSpacing(const Attributes& attributes, OmePicture& picture) {
     }
 }
 
+// Planes in the order in which pages hold them. Any of them is named by the last block that names
+// it; blocks are taken from the last one on and step over planes that are named, so that text that
+// repeats itself costs no more than its length and the number of planes.
+class NamedPlanes {
+  public:
+    explicit NamedPlanes(std::size_t planes) : next_(planes + 1) {
+        std::iota(next_.begin(), next_.end(), std::size_t{0});
+    }
+
+    // @return the first plane from this one on that nobody has named, or the number of planes
+    std::size_t firstUnnamed(std::size_t plane) {
+        std::size_t first = plane;
+        while (next_[first] != first) first = next_[first];
+        while (next_[plane] != first) plane = std::exchange(next_[plane], first);
+        return first;
+    }
+    void setNamed(std::size_t plane) { next_[plane] = plane + 1; }
+
+  private:
+    std::vector<std::size_t> next_;
+};
+
 // @param own  the name of planes that are in the file
 void setPages(const Pixels& pixels, const std::string& own, OmePicture& picture) {
     const std::array<std::int64_t, 3> sizes{picture.slices, picture.channels, picture.times};
+    const std::array<std::int64_t, 3> strides{1, sizes[0], sizes[0] * sizes[1]};
     const std::array<std::size_t, 3> order = orderOf(pixels.attributes);
-    std::vector<Block> blocks = pixels.blocks;
-    if (blocks.empty()) blocks.emplace_back();
-    for (const Block& block : blocks) {
-        std::array<std::int64_t, 3> at = block.first;
-        const auto count =
-            block.count.value_or(block.page ? 1 : std::int64_t(picture.pages.size()));
-        for (std::int64_t i = 0; i < count; ++i) {
-            bool isInside = true;
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                isInside = isInside && at[axis] >= 0 && at[axis] < sizes[axis];
-            if (!isInside) break;
-            const bool isHere = block.file.empty() || block.file == own;
-            if (!isHere) picture.otherFile = block.file;
-            picture.pages[std::size_t(at[0] + sizes[0] * (at[1] + sizes[1] * at[2]))] =
-                isHere ? block.page.value_or(0) + i : -1;
-            for (std::size_t n = 0; n < 3; ++n) {
-                if (++at[order[n]] < sizes[order[n]] || n == 2) break;
-                at[order[n]] = 0;
+    constexpr std::int64_t kFarthest = std::int64_t{1} << 62;  // that sums can pass without harm
+    const std::size_t planes = picture.pages.size();
+    NamedPlanes named(planes);
+    const std::vector<Block> all(1);
+    const std::vector<Block>& blocks = pixels.blocks.empty() ? all : pixels.blocks;
+    for (auto block = blocks.rbegin(); block != blocks.rend(); ++block) {
+        std::int64_t start = 0, stride = 1;
+        bool isInside = true;
+        for (const std::size_t axis : order) {
+            isInside = isInside && block->first[axis] >= 0 && block->first[axis] < sizes[axis];
+            start += isInside ? block->first[axis] * stride : 0;
+            stride *= sizes[axis];
+        }
+        if (!isInside) continue;
+        const auto first = std::size_t(start);
+        const auto count = block->count.value_or(block->page ? 1 : std::int64_t(planes));
+        const std::size_t end =
+            first + std::size_t(std::clamp<std::int64_t>(count, 0, std::int64_t(planes - first)));
+        const bool isHere = block->file.empty() || block->file == own;
+        for (std::size_t i = named.firstUnnamed(first); i < end; i = named.firstUnnamed(i)) {
+            named.setNamed(i);
+            if (!isHere) {
+                picture.otherFile = block->file;
+                continue;
             }
+            auto left = std::int64_t(i);
+            std::int64_t place = 0;
+            for (const std::size_t axis : order) {
+                place += left % sizes[axis] * strides[axis];
+                left /= sizes[axis];
+            }
+            picture.pages[std::size_t(place)] =
+                std::min(block->page.value_or(0), kFarthest) + std::int64_t(i - first);
         }
     }
 }
@@ -150,10 +190,13 @@ void setPages(const Pixels& pixels, const std::string& own, OmePicture& picture)
 std::vector<OmePicture> readOme(const std::filesystem::path& file, const std::string& text,
                                 int samples) {
     constexpr std::int64_t kMostPlanes = std::int64_t{1} << 22;
+    constexpr double kPerByte = 20;  // of text: what tags and pictures of the shortest kind take
     const std::string where = file.string();
+    requireClaimedMemory(where, kPerByte * double(text.size()));
     const std::vector<Pixels> all = pixelsIn(text);
     const std::string own = nameIn(all, file.filename().string());
     std::vector<OmePicture> pictures;
+    double planes = 0;  // of all pictures
     for (const Pixels& pixels : all) {
         OmePicture picture;
         const auto size = [&](const char* name) {
@@ -170,12 +213,13 @@ std::vector<OmePicture> readOme(const std::filesystem::path& file, const std::st
         // Samples of a pixel are channels that share a plane.
         const std::int64_t shared = pixels.samples > 0 ? pixels.samples : samples;
         if (shared > 1 && picture.channels % shared == 0) picture.channels /= shared;
-        const double planes =
+        const double ofPicture =
             double(picture.slices) * double(picture.channels) * double(picture.times);
+        planes += ofPicture;
         if (planes > double(kMostPlanes))
             throw Error(ErrorCode::kInput, gotExpected(where, numberText(planes) + " planes",
                                                        "at most " + std::to_string(kMostPlanes)));
-        picture.pages.assign(std::size_t(planes), -1);
+        picture.pages.assign(std::size_t(ofPicture), -1);
         setSpacing(pixels.attributes, picture);
         setPages(pixels, own, picture);
         pictures.push_back(std::move(picture));

@@ -290,25 +290,24 @@ Planes planesOfShape(const TiffPages& tiff) {
 void takeOme(const Path& file, const TiffPages& tiff, const std::vector<OmePicture>& pictures,
              const std::optional<std::int64_t>& chosen, const Listener& listener,
              TiffVolume& volume) {
-    std::vector<std::pair<std::size_t, std::int64_t>> volumes;  // which picture's, and its number
-    std::vector<Planes> all;
-    std::string axes;
-    for (std::size_t i = 0; i < pictures.size(); ++i) {
-        const OmePicture& one = pictures[i];
+    const auto planesIn = [&file](const OmePicture& one, const Listener& heard) {
         const auto at = [&one](auto z, auto c, auto t) {
             return one.pages[std::size_t(z + one.slices * (c + one.channels * t))];
         };
-        all.push_back(planesOf(file.string(), one.slices, one.channels, one.times, at, listener));
-        for (std::int64_t n = 0; n < all[i].volumes; ++n) volumes.emplace_back(i, n);
-        axes = pictures.size() == 1 ? all[i].axes
-                                    : countText(std::int64_t(pictures.size()), "picture");
-    }
-    volume.volumes = std::int64_t(volumes.size());
-    const auto n = std::size_t(chooseVolume(file.string(), axes, volume.volumes, chosen));
-    const OmePicture& picture = pictures[volumes[n].first];
-    const Planes& planes = all[volumes[n].first];
+        return planesOf(file.string(), one.slices, one.channels, one.times, at, heard);
+    };
+    volume.volumes = 0;
+    for (const OmePicture& one : pictures) volume.volumes += planesIn(one, {}).volumes;
+    const std::string axes = pictures.size() == 1
+                                 ? planesIn(pictures[0], {}).axes
+                                 : countText(std::int64_t(pictures.size()), "picture");
+    std::int64_t n = chooseVolume(file.string(), axes, volume.volumes, chosen);
+    std::size_t i = 0;
+    for (; n >= planesIn(pictures[i], {}).volumes; ++i) n -= planesIn(pictures[i], {}).volumes;
+    const OmePicture& picture = pictures[i];
+    const Planes planes = planesIn(picture, listener);
     for (std::int64_t slice = 0; slice < planes.slices; ++slice) {
-        const std::int64_t page = planes.at(slice, volumes[n].second);
+        const std::int64_t page = planes.at(slice, n);
         if (page >= 0 && page < std::int64_t(tiff.pages.size())) {
             volume.planes.push_back(page);
             continue;

@@ -40,9 +40,11 @@ std::optional<std::string> characterNamed(std::string_view name) {
 }
 
 std::string plainText(std::string_view text) {
+    constexpr std::size_t kLongest = 12;  // of what stands between & and ;, both included
     std::string plain;
     while (!text.empty()) {
-        const std::size_t end = text[0] == '&' ? text.find(';') : std::string_view::npos;
+        const std::size_t end =
+            text[0] == '&' ? text.substr(0, kLongest).find(';') : std::string_view::npos;
         const auto character = end == std::string_view::npos
                                    ? std::optional<std::string>()
                                    : characterNamed(text.substr(1, end - 1));
