@@ -6,15 +6,17 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
+#include <mutex>
 #include <sstream>
 #include <string_view>
 #include <vector>
 
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
-#include "image/brace_free_file.h"
 #include "image/linear_rec709.h"
 #include "image/memory_file.h"
+#include "ingest/guards/in_child.h"
 #include "lower_case.h"
 #include "modules/image_module.h"
 #include "parallel.h"
@@ -106,9 +108,9 @@ class Processor : public ColorProcessor {
         working_ = workingSpaceOf(config_, options_);
         if (!options_.colorSpace.empty()) {
             requireOneOf("`colorSpace`", options_.colorSpace, config_.getColorSpaceNames());
-            stored_ = config_.createColorProcessor(working_, options_.colorSpace);
-            requireMade(stored_, complaint(config_.geterror()), "`colorSpace`",
-                        options_.colorSpace);
+            stored_ = make(config_, "`colorSpace`", options_.colorSpace, [&] {
+                return config_.createColorProcessor(working_, options_.colorSpace);
+            });
         }
         if (!options_.display.empty() || !options_.displayView.empty()) findDisplay();
         if (!options_.look.empty()) {
@@ -117,10 +119,9 @@ class Processor : public ColorProcessor {
             if (isNone) std::ofstream(nothing.name()) << kNoConfig;
             OIIO::ColorConfig none(isNone ? nothing.name() : std::string());
             OIIO::ColorConfig& known = isNone ? none : config_;
-            const BraceFreeFile table(options_.look);
-            look_ = known.createFileTransform(table.name());
-            requireMade(look_, table.named(complaint(known.geterror())), "`look`",
-                        options_.look.string());
+            look_ = make(known, "`look`", options_.look.string(), [&] {
+                return known.createFileTransform(std::filesystem::absolute(options_.look).string());
+            });
         }
     }
 
@@ -150,15 +151,33 @@ class Processor : public ColorProcessor {
             options_.displayView = name ? name : "";
         }
         requireOneOf("`displayView`", options_.displayView, config_.getViewNames(options_.display));
-        shown_ = config_.createDisplayTransform(options_.display, options_.displayView, working_);
-        requireMade(shown_, complaint(config_.geterror()), "`display`", options_.display);
+        shown_ = make(config_, "`display`", options_.display, [&] {
+            return config_.createDisplayTransform(options_.display, options_.displayView, working_);
+        });
     }
 
-    static void requireMade(const OIIO::ColorProcessorHandle& made, const std::string& reason,
-                            const char* option, const std::string& name) {
-        if (made) return;
-        throw Error(ErrorCode::kInput, gotExpected(option, printable(name) + ": " + reason,
-                                                   "what OpenColorIO can make a transform of"));
+    // OpenImageIO takes what OpenColorIO complains of, with names and lines of files in it, for the
+    // format of its own message, and ends the process where braces make it none. So what is to be
+    // made is made in another process before, which ends instead and keeps the complaint. One at a
+    // time, for another thread's lock would stay locked there.
+    static OIIO::ColorProcessorHandle make(
+        OIIO::ColorConfig& config, const char* option, const std::string& name,
+        const std::function<OIIO::ColorProcessorHandle()>& create) {
+        static std::mutex making;
+        const std::lock_guard lock(making);
+        std::string reason;
+        std::byte nothing{};
+        const auto createThere = [&](std::byte*) {
+            create();
+            return true;
+        };
+        if (inChild(1, createThere, &nothing, &reason)) {
+            if (OIIO::ColorProcessorHandle made = create()) return made;
+            reason = config.geterror();
+        }
+        throw Error(ErrorCode::kInput,
+                    gotExpected(option, printable(name) + ": " + complaint(reason),
+                                "what OpenColorIO can make a transform of"));
     }
 
     void apply(const OIIO::ColorProcessorHandle& processor, Image& image) const {

@@ -6,9 +6,11 @@
 
 #include <array>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "support/error_of.h"
+#include "unit/temp_folder.h"
 
 namespace deltasplat {
 namespace {
@@ -112,6 +114,62 @@ TEST(ColorManagement, refusesWhatIsNotThere) {
                   color.look = dataFile("config.ocio");
               }).find("`look`: got "),
               std::string::npos);
+}
+
+// OpenImageIO takes what is said of a file for a format of its own message, and would end the
+// process.
+TEST(ColorManagement, refusesTablesWithBracesInThem) {
+    const test::TempFolder folder;
+    const std::string table = "LUT_1D_SIZE 2\n0 0 0\n1 1 1\n{:x \033[31m}\n";
+    const std::string config = R"(ocio_profile_version: 2
+search_path: .
+roles: {default: raw, scene_linear: lin}
+displays:
+  sRGB:
+    - !<View> {name: Bad, colorspace: bad}
+    - !<View> {name: Gone, colorspace: gone}
+active_displays: [sRGB]
+active_views: [Bad, Gone]
+colorspaces:
+  - !<ColorSpace>
+    name: lin
+  - !<ColorSpace>
+    name: raw
+    isdata: true
+  - !<ColorSpace>
+    name: bad
+    from_scene_reference: !<FileTransform> {src: a.cube}
+  - !<ColorSpace>
+    name: gone
+    from_scene_reference: !<FileTransform> {src: "{}{:x}\e[31m.cube"}
+)";
+    std::ofstream(folder / "a.cube") << table;
+    std::ofstream(folder / "{0}.cube") << table;
+    std::ofstream(folder / "c.ocio") << config;
+    const auto message = [&](const auto& change) {
+        ColorOptions color;
+        color.config = folder / "c.ocio";
+        change(color);
+        return errorOf([&] { ColorTransform{color}; });
+    };
+    const auto expectRefused = [](const std::string& text, const std::string& begin,
+                                  const std::string& part) {
+        EXPECT_TRUE(text.starts_with(begin)) << text;
+        EXPECT_NE(text.find(part), std::string::npos) << text;
+        EXPECT_EQ(text.find_first_of("\n\033"), std::string::npos) << text;
+    };
+    expectRefused(message([](ColorOptions& color) { color.display = "sRGB"; }),
+                  "input: `display`: got sRGB: ", "a.cube). At line (4): '{:x ?[31m}'");
+    expectRefused(message([](ColorOptions& color) { color.displayView = "Gone"; }),
+                  "input: `display`: got sRGB: ", "'{}{:x}?[31m.cube' could not be located");
+    expectRefused(message([](ColorOptions& color) { color.colorSpace = "bad"; }),
+                  "input: `colorSpace`: got bad: ", "'{:x ?[31m}'");
+    expectRefused(message([&](ColorOptions& color) { color.look = folder / "a.cube"; }),
+                  "input: `look`: got " + (folder / "a.cube").string() + ": ", "'{:x ?[31m}'");
+    expectRefused(message([&](ColorOptions& color) { color.look = folder / "{0}.cube"; }),
+                  "input: `look`: got " + (folder / "{0}.cube").string() + ": ",
+                  "/{0}.cube). At line (4): '{:x ?[31m}'");
+    EXPECT_EQ(message([](ColorOptions& color) { color.colorSpace = "lin"; }), "no error");
 }
 
 }  // namespace

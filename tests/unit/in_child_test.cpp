@@ -11,7 +11,10 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <memory>
+#include <stdexcept>
+#include <string>
 
 #include "process/interrupt.h"
 #include "support/error_of.h"
@@ -43,6 +46,38 @@ TEST(InChild, OutlivesWorkThatEndsTheProcess) {
         1, [](std::byte*) -> bool { throw 1; }, &byte));
 }
 
+// Some libraries do so while they handle an exception: what that one says is kept, and files that
+// the parent writes stay.
+TEST(InChild, TellsWhatEndedTheWork) {
+    const auto whyOf = [](const std::function<bool(std::byte*)>& work) {
+        std::byte byte{};
+        std::string why = "before";
+        EXPECT_FALSE(inChild(1, work, &byte, &why));
+        return why;
+    };
+    EXPECT_EQ(whyOf([](auto*) -> bool { throw std::runtime_error("a {b}"); }), "a {b}");
+    EXPECT_EQ(whyOf([](auto*) -> bool {
+                  try {
+                      throw std::runtime_error("a {b}");
+                  } catch (...) {
+                      std::terminate();
+                  }
+              }),
+              "a {b}");
+    EXPECT_EQ(whyOf([](auto*) -> bool { std::terminate(); }), "");
+    EXPECT_EQ(whyOf([](auto*) { return false; }), "");
+    EXPECT_EQ(whyOf([](auto*) -> bool { throw std::runtime_error(std::string(9000, 'x')); }),
+              std::string(4095, 'x'));
+}
+
+TEST(InChild, RemovesNoFilesOfItsParent) {
+    const std::terminate_handler before = std::set_terminate([] { ::kill(::getppid(), SIGUSR1); });
+    std::byte byte{};
+    EXPECT_FALSE(inChild(
+        1, [](auto*) -> bool { std::terminate(); }, &byte));
+    std::set_terminate(before);
+}
+
 // A decoder that believes a size in its bytes takes no more than a child is given.
 TEST(InChild, TakesNoMemoryWithoutEnd) {
     std::byte byte{};
@@ -66,7 +101,7 @@ TEST(InChild, WorkThatSomebodyEndsIsNotBadInput) {
     std::byte byte{};
     const auto killed = [](std::byte*) -> bool { return ::raise(SIGKILL) == 0; };
     EXPECT_EQ(errorOf([&] { inChild(1, killed, &byte); }),
-              "failed: unpacking in a process of its own failed: it was ended by signal 9");
+              "failed: work in a process of its own failed: it was ended by signal 9");
 }
 
 TEST(InChild, AForkThatFailsIsNotBadInput) {
@@ -82,7 +117,7 @@ TEST(InChild, AForkThatFailsIsNotBadInput) {
             inChild(
                 1, [](auto*) { return true; }, &byte);
         });
-        ::_exit(error == "no error" ? 2 : error.rfind("failed: unpacking in a process", 0) != 0);
+        ::_exit(error == "no error" ? 2 : error.rfind("failed: work in a process", 0) != 0);
     }
     int status = 0;
     ::waitpid(other, &status, 0);

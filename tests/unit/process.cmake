@@ -8,8 +8,6 @@ deltasplat_test(unit/flag_names_test.cpp SOURCES ${tools}/flag_names.cpp)
 deltasplat_test(unit/large_pages_test.cpp SOURCES ${tools}/process/large_pages.cpp
                 ${tools}/process/reuse_memory.cpp)
 deltasplat_test(unit/interrupt_test.cpp SOURCES ${tools}/process/interrupt.cpp)
-if(DELTASPLAT_ITK)
-    deltasplat_test(unit/in_child_test.cpp SOURCES ${tools}/process/interrupt.cpp)
-endif()
+deltasplat_test(unit/in_child_test.cpp SOURCES ${tools}/process/interrupt.cpp)
 deltasplat_test(unit/listener_test.cpp SOURCES ${tools}/listener.cpp ${tools}/flag_names.cpp
                 ${tools}/process/interrupt.cpp ${tools}/process/run_log.cpp ${tools}/process/tell_place.cpp)

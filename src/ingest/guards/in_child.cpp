@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <exception>
 #include <fstream>
 #include <new>
 #include <string>
@@ -69,8 +70,33 @@ void endWithParent(pid_t parent) {
     if (::getppid() != parent) ::_exit(0);
 }
 
+// What the parent and the child have in common: whether the work is done, what it complained of,
+// and what it wrote.
+constexpr std::size_t kMostWhy = 4096, kAhead = 1 + kMostWhy;
+std::byte* inCommon = nullptr;  // of the child, for its end
+
+// Only where an exception is being handled.
+void keepComplaint() {
+    try {
+        throw;
+    } catch (const std::exception& problem) {
+        std::strncpy(reinterpret_cast<char*>(inCommon + 1), problem.what(), kMostWhy - 1);
+    } catch (...) {
+        // Nobody knows what it says.
+    }
+}
+
+// Files that the parent is writing are none of the child's to remove, as the parent's handler
+// would.
+[[noreturn]] void endChild() {
+    if (std::current_exception()) keepComplaint();
+    ::_exit(0);
+}
+
 [[noreturn]] void runChild(pid_t parent, std::uint64_t mostMemory,
                            const std::function<bool(std::byte*)>& work, std::byte* shared) {
+    inCommon = shared;
+    std::set_terminate(endChild);
     endWithParent(parent);
     forgetSignalHandlers();
     constexpr rlim_t kSeconds = 60;
@@ -82,9 +108,9 @@ void endWithParent(pid_t parent) {
     ::dup2(nowhere, STDOUT_FILENO);
     ::dup2(nowhere, STDERR_FILENO);
     try {
-        if (work(shared + 1)) shared[0] = std::byte{1};
+        if (work(shared + kAhead)) shared[0] = std::byte{1};
     } catch (...) {
-        // The parent sees that nothing was done.
+        keepComplaint();
     }
     ::_exit(0);
 }
@@ -99,14 +125,14 @@ std::uint64_t memoryFor(std::size_t bytes) {
 }
 
 [[noreturn]] void fail(const std::string& why) {
-    throw Error(ErrorCode::kFailed, "unpacking in a process of its own failed: " + why);
+    throw Error(ErrorCode::kFailed, "work in a process of its own failed: " + why);
 }
 
 }  // namespace
 
-bool inChild(std::size_t bytes, const std::function<bool(std::byte*)>& work, std::byte* to) {
-    // The first byte says that the others are there.
-    const SharedBytes shared(bytes + 1);
+bool inChild(std::size_t bytes, const std::function<bool(std::byte*)>& work, std::byte* to,
+             std::string* why) {
+    const SharedBytes shared(bytes + kAhead);
     const std::uint64_t mostMemory = memoryFor(bytes);
     const pid_t parent = ::getpid();
     const pid_t child = ::fork();
@@ -120,8 +146,9 @@ bool inChild(std::size_t bytes, const std::function<bool(std::byte*)>& work, std
         if (WIFSIGNALED(status) && WTERMSIG(status) == signal)
             fail("it was ended by signal " + std::to_string(signal));
     }
+    if (why) *why = reinterpret_cast<const char*>(shared.get() + 1);
     if (shared.get()[0] == std::byte{0}) return false;
-    std::memcpy(to, shared.get() + 1, bytes);
+    std::memcpy(to, shared.get() + kAhead, bytes);
     return true;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <string>
 
 namespace deltasplat {
 
@@ -12,8 +13,11 @@ namespace deltasplat {
 /// its own and no signal handlers, and ends with the thread that called this.
 /// @param work  writes `bytes` bytes to its argument; returns false, or throws, if it cannot
 /// @param to    what it wrote
+/// @param why   if not null: what the exception says that ended the work, or the child by
+///              std::terminate (at most some kilobytes of it); empty if none did
 /// @return whether it was done
 /// @throw Error(kFailed) if there can be no child, or if somebody ended it
-bool inChild(std::size_t bytes, const std::function<bool(std::byte*)>& work, std::byte* to);
+bool inChild(std::size_t bytes, const std::function<bool(std::byte*)>& work, std::byte* to,
+             std::string* why = nullptr);
 
 }  // namespace deltasplat
