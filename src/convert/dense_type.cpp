@@ -44,10 +44,11 @@ RawType denseType(const Volume& volume, const ValueFacts& facts, bool wide, Note
     const RawType type = chooseType(volume, facts, wide);
     const std::string name = rawTypeName(type);
     const std::string before = sourceType(volume).empty() ? volume.type : sourceType(volume);
-    if (facts.doubleError > 0) {
+    if (!facts.fit(type)) {
         notes.loss(before + " stored as " + name + ", which is off by up to " +
                    numberText(facts.doubleError));
-    } else if (name != before && !(before == "float" && name == "float32") &&
+    } else if (name != before && volume.readError == 0 &&
+               !(before == "float" && name == "float32") &&
                !(before == "double" && name == "float64")) {
         notes.remark(before + " stored as " + name + ", which holds every value");
     }

@@ -23,11 +23,12 @@ namespace {
 constexpr int kBlock = 8;
 
 // Where the voxels of a box lie in an array of its values.
+template <typename Value>
 struct BoxArray {
     const IndexBox& box;
-    double* values;
+    Value* values;
 
-    double* at(const glm::ivec3& voxel) const {
+    Value* at(const glm::ivec3& voxel) const {
         const glm::ivec3 place = voxel - box.min;
         const glm::ivec3 dims = box.dims();
         return values +
@@ -38,8 +39,8 @@ struct BoxArray {
 };
 
 // Calls fill(row, count, number in its leaf of the row's first voxel) for the rows of a block.
-template <typename Fill>
-void forRows(const IndexBox& block, const BoxArray& array, const Fill& fill) {
+template <typename Value, typename Fill>
+void forRows(const IndexBox& block, const BoxArray<Value>& array, const Fill& fill) {
     const glm::ivec3& min = block.min;
     for (int z = min.z; z <= block.max.z; ++z) {
         for (int y = min.y; y <= block.max.y; ++y) {
@@ -49,30 +50,30 @@ void forRows(const IndexBox& block, const BoxArray& array, const Fill& fill) {
     }
 }
 
-template <typename Accessor, typename ValueOf>
+template <typename Accessor, typename ValueOf, typename Value>
 void readBlock(const Accessor& accessor, const ValueOf& valueOf, const IndexBox& block,
-               const BoxArray& array) {
+               const BoxArray<Value>& array) {
     const openvdb::Coord corner(block.min.x, block.min.y, block.min.z);
     if (const auto* leaf = accessor.probeConstLeaf(corner)) {
-        forRows(block, array, [&](double* row, int count, openvdb::Index place) {
+        forRows(block, array, [&](Value* row, int count, openvdb::Index place) {
             constexpr openvdb::Index kAlongX = 64;
             for (int x = 0; x < count; ++x, place += kAlongX) {
                 row[x] = valueOf(leaf->getValue(place), leaf->isValueOn(place));
             }
         });
     } else {
-        const double value = valueOf(accessor.getValue(corner), accessor.isValueOn(corner));
+        const Value value = valueOf(accessor.getValue(corner), accessor.isValueOn(corner));
         forRows(block, array,
-                [&](double* row, int count, openvdb::Index) { std::fill_n(row, count, value); });
+                [&](Value* row, int count, openvdb::Index) { std::fill_n(row, count, value); });
     }
 }
 
-template <typename Tree, typename ValueOf>
-ReadBox treeReader(const Tree& tree, const ValueOf& valueOf) {
-    return [&tree, valueOf](const IndexBox& box, double* values) {
+template <typename Value, typename Tree, typename ValueOf>
+ReadBox<Value> treeReader(const Tree& tree, const ValueOf& valueOf) {
+    return [&tree, valueOf](const IndexBox& box, Value* values) {
         // The tree is not changed meanwhile, so the accessor need not hear of it.
         const openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false> accessor(tree);
-        const BoxArray array{box, values};
+        const BoxArray<Value> array{box, values};
         const glm::ivec3 first = box.min & ~(kBlock - 1);
         for (int z = first.z; z <= box.max.z; z += kBlock) {
             for (int y = first.y; y <= box.max.y; y += kBlock) {
@@ -87,10 +88,11 @@ ReadBox treeReader(const Tree& tree, const ValueOf& valueOf) {
     };
 }
 
-ReadBox codeReader(const Volume& volume) {
-    return treeReader(volume.codes->tree(),
-                      [values = valuesOfCodes(volume.codeBook), background = volume.background](
-                          Code code, bool active) { return active ? values[code] : background; });
+ReadBox<double> codeReader(const Volume& volume) {
+    return treeReader<double>(
+        volume.codes->tree(),
+        [values = valuesOfCodes(volume.codeBook), background = volume.background](
+            Code code, bool active) { return active ? values[code] : background; });
 }
 
 template <typename T>
@@ -106,25 +108,37 @@ double store(const double* values, std::size_t count, std::byte* out) {
 
 }  // namespace
 
-ReadBox boxReader(const Volume& volume) {
+ReadBox<double> boxReader(const Volume& volume) {
     if (!volume.source) return codeReader(volume);
-    ReadBox reader;
+    ReadBox<double> reader;
+    const bool isUnsigned = holdsUnsigned(volume);
     volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
         using T = typename std::decay_t<decltype(tree)>::ValueType;
-        reader = treeReader(tree, [background = volume.background](T value, bool) {
-            if constexpr (std::is_floating_point_v<T>) {
-                if (!std::isfinite(value)) return background;
-            } else {
-                static_cast<void>(background);
-            }
-            return double(value);
-        });
+        reader =
+            treeReader<double>(tree, [=, background = volume.background](T value, bool) -> double {
+                if constexpr (std::is_floating_point_v<T>)
+                    if (!std::isfinite(value)) return background;
+                if constexpr (std::is_same_v<T, std::int64_t>)
+                    if (isUnsigned) return double(std::uint64_t(value));
+                return double(value);
+            });
     });
     return reader;
 }
 
+ReadBox<std::int64_t> integerReader(const Volume& volume) {
+    const auto* const tree = volume.source ? volume.source->grid.as<openvdb::Int64Tree>() : nullptr;
+    if (!tree) return {};
+    return treeReader<std::int64_t>(*tree, [](std::int64_t value, bool) { return value; });
+}
+
 double storeValues(const double* values, std::size_t count, RawType type, std::byte* out) {
     return withRawType(type, [&](auto zero) { return store<decltype(zero)>(values, count, out); });
+}
+
+double storeValues(const std::int64_t* values, std::size_t count, RawType, std::byte* out) {
+    for (std::size_t i = 0; i < count; ++i) storeLittle(values[i], out + i * sizeof(values[i]));
+    return 0;
 }
 
 }  // namespace deltasplat

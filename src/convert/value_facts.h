@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 
 #include "deltasplat/ingest/volume.h"
 #include "ingest/raw/raw_format.h"
@@ -18,9 +19,11 @@ struct ValueFacts {
     double min = 0;
     double max = 0;
     bool any = false;
-    bool whole = true;       ///< whole numbers, none of them -0
-    bool floats = true;      ///< a float holds every value
-    double doubleError = 0;  ///< largest difference between a value and its nearest double
+    bool whole = true;         ///< whole numbers, none of them -0
+    bool floats = true;        ///< a float holds every value
+    bool ints = true;          ///< an int64 holds every value
+    bool unsignedInts = true;  ///< an uint64 holds every value
+    double doubleError = 0;    ///< largest difference between a value and its nearest double
 
     template <typename T>
     void add(T value) {
@@ -33,10 +36,15 @@ struct ValueFacts {
             whole = whole && number == std::floor(number) && (number != 0 || !std::signbit(number));
         }
         floats = floats && double(float(number)) == number;
-        if constexpr (std::is_same_v<T, std::int64_t>) {
+        if constexpr (std::is_integral_v<T> && sizeof(T) == 8) {
+            ints = ints && std::in_range<std::int64_t>(value);
+            unsignedInts = unsignedInts && std::in_range<std::uint64_t>(value);
             const double error = errorOfDouble(value, number);
             floats = floats && error == 0;
             doubleError = std::max(doubleError, error);
+        } else {
+            ints = ints && whole && number >= -0x1p63 && number < 0x1p63;
+            unsignedInts = unsignedInts && whole && number >= 0 && number < 0x1p64;
         }
     }
     void append(const ValueFacts& other);
@@ -44,9 +52,12 @@ struct ValueFacts {
     bool fit(RawType type) const;
 
   private:
-    static double errorOfDouble(std::int64_t value, double number) {
-        // Between 2^53 and 2^63, where doubles are whole numbers; the largest may round to 2^63.
-        const auto whole = number < 0 ? -std::uint64_t(-number) : std::uint64_t(number);
+    template <typename T>
+    static double errorOfDouble(T value, double number) {
+        // From 2^53 on doubles are whole numbers; the largest may round to 2^64, which is 0 then.
+        const std::uint64_t whole = number < 0        ? -std::uint64_t(-number)
+                                    : number < 0x1p64 ? std::uint64_t(number)
+                                                      : 0;
         const std::uint64_t difference = whole - std::uint64_t(value);
         return double(std::min(difference, -difference));
     }

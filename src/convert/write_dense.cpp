@@ -127,7 +127,8 @@ class Layer {
     const std::vector<std::byte>& data() const { return data_; }
 
     /// Fills the layer on all threads; returns the largest error.
-    double fill(const ReadBox& read) {
+    template <typename Value>
+    double fill(const ReadBox<Value>& read) {
         data_.resize(rowBytes_ * std::size_t(box_.dims().y) * std::size_t(box_.dims().z));
         const int firstStrip = box_.min.y & ~(kBlock - 1);
         std::vector<double> errors(std::size_t((box_.max.y - firstStrip) / kBlock + 1));
@@ -142,11 +143,12 @@ class Layer {
     }
 
   private:
-    double fillStrip(const IndexBox& part, const ReadBox& read) {
+    template <typename Value>
+    double fillStrip(const IndexBox& part, const ReadBox<Value>& read) {
         const auto width = std::size_t(part.dims().x);
-        const auto values = std::make_unique_for_overwrite<double[]>(std::size_t(part.voxels()));
+        const auto values = std::make_unique_for_overwrite<Value[]>(std::size_t(part.voxels()));
         read(part, values.get());
-        const double* row = values.get();
+        const Value* row = values.get();
         double error = 0;
         for (int z = 0; z < part.dims().z; ++z) {
             for (int y = part.min.y - box_.min.y; y <= part.max.y - box_.min.y; ++y, row += width) {
@@ -166,9 +168,9 @@ class Layer {
     std::vector<std::byte> data_;
 };
 
-double writeValues(const Volume& volume, const IndexBox& box, const DenseLayout& layout,
+template <typename Value>
+double writeValues(const ReadBox<Value>& read, const IndexBox& box, const DenseLayout& layout,
                    PackedOutput& out, const Listener& listener) {
-    const ReadBox read = boxReader(volume);
     double error = 0;
     for (int first = box.min.z; first <= box.max.z; first = (first & ~(kBlock - 1)) + kBlock) {
         IndexBox slices = box;
@@ -209,7 +211,11 @@ WriteReport writeDense(const std::filesystem::path& file, const DenseFormat& for
     const std::string header = format.header(layout, dataFile.filename().string());
     head.write(header.data(), header.size());
     if (format.gzipData && !format.gzipHeader) data.beginGzip();
-    report.maxError = std::max(facts.doubleError, writeValues(volume, box, layout, data, listener));
+    const bool isWide = layout.type == RawType::kInt64 || layout.type == RawType::kUint64;
+    const ReadBox<std::int64_t> integers = isWide ? integerReader(volume) : nullptr;
+    report.maxError = integers ? writeValues(integers, box, layout, data, listener)
+                               : std::max(facts.doubleError, writeValues(boxReader(volume), box,
+                                                                         layout, data, listener));
 
     head.close();
     data.close();

@@ -83,7 +83,8 @@ TreeGrid sparseGrid(const TreeGrid& grid, const Volume& volume, const WriteOptio
 void noteType(const Volume& volume, const std::string& type, bool half, Notes& notes) {
     const bool same = volume.type == type || (volume.type == "float32" && type == "float") ||
                       (volume.type == "float64" && type == "double");
-    if (volume.hasBackground || same) return;
+    // What was not read exactly has been said.
+    if (volume.hasBackground || same || volume.readError > 0) return;
     notes.remark(volume.type + " stored as " + (half ? "half" : type) +
                  ", which holds every value");
 }

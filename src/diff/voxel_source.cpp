@@ -281,8 +281,9 @@ VoxelSource::VoxelSource(const Volume& volume, bool wide, WideValue background, 
         };
         std::visit(read, packed->nodes);
     } else if (volume.source) {
-        const bool isUnsigned = volume.source->grid.metadata.text(kSourceTypeKey) == "uint64";
-        withSource(volume, [&](const auto& tree) { readTree(tree, {nullptr, wide, isUnsigned}); });
+        withSource(volume, [&](const auto& tree) {
+            readTree(tree, {nullptr, wide, holdsUnsigned(volume)});
+        });
     } else {
         readTree(
             volume.codes->tree(),

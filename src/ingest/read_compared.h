@@ -7,9 +7,9 @@
 
 namespace deltasplat {
 
-/// Reads a volume for compareVolumes alone: as readVolume, but unsigned integers of 64 bits of
-/// which no double holds all stay what they are. Volume::source is then a grid of int64 with their
-/// bits, whose kSourceTypeKey is "uint64".
+/// Reads a volume for compareVolumes, or for writeVolumes to write in a format that has unsigned
+/// integers: as readVolume, but those of 64 bits of which neither codes nor int64 hold all stay
+/// what they are. Volume::source is then a grid of int64 with their bits (holdsUnsigned).
 Volume readCompared(const std::filesystem::path& file, const ReadOptions& options,
                     const Listener& listener);
 

@@ -14,7 +14,6 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
-#include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/source_grid.h"
 #include "support/make_volume.h"
 
@@ -590,9 +589,7 @@ TEST(CompareVolumes, UnsignedIntegersAreExact) {
         auto grid = openvdb::Int64Grid::create(0);
         grid->tree().setValueOn(Coord(1, 2, 3), std::int64_t(value));
         Volume volume = volumeOf<openvdb::Int64Grid>(grid);
-        SourceGrid source = *volume.source;
-        source.grid.metadata.insert(kSourceTypeKey, std::string("uint64"));
-        volume.source = std::make_shared<const SourceGrid>(std::move(source));
+        volume.type = "uint64";
         return volume;
     };
     constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();

@@ -6,10 +6,13 @@
 
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/delta/delta_file.h"
+#include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/ingest/label_list.h"
 #include "ingest/grids/tree_types.h"
+#include "ingest/read_compared.h"
 #include "length_unit.h"
 #include "unit/convert_helpers.h"
+#include "unit/format_helpers.h"
 #include "unit/vdb_helpers.h"
 
 namespace deltasplat::testing {
@@ -64,6 +67,63 @@ TEST(WriteDense, EveryTypeThereAndBack) {
     expectThereAndBack<std::int32_t>("int32", -2147483647, 2147483647);
     expectThereAndBack<float>("float32", -0.1F, 1e30F);
     expectThereAndBack<double>("float64", -0.1, 1e300);
+}
+
+// Writes integers that no double holds, and compares them with what comes back.
+// @param vdbError  how far what is in a .vdb is off
+template <typename T>
+void expectWholeNumbers(const std::string& type, const std::vector<T>& values, double vdbError) {
+    const TempFolder folder;
+    const std::string bytes = bytesOf(values);
+    writeBytes("in.nrrd", "NRRD0004\ntype: " + type + "\ndimension: 3\nsizes: 5 1 1\n" +
+                              "endian: little\nencoding: raw\n\n" + bytes);
+    ReadOptions keep;
+    keep.keepSource = true;
+    for (const std::string extension : {".npy", ".nrrd", ".mha", ".nii"}) {
+        SCOPED_TRACE(type + extension);
+        Volume volume = readCompared("in.nrrd", keep, {});
+        if (extension == ".nii") volume.space = "RAS";
+        const WriteReport report = write("out" + extension, volume);
+        EXPECT_EQ(report.notes, std::vector<std::string>{});
+        EXPECT_TRUE(report.lossless);
+        EXPECT_EQ(report.maxError, 0);
+        const Volume back = readCompared("out" + extension, keep, {});
+        EXPECT_EQ(back.type, type);
+        EXPECT_EQ(compareVolumes(volume, back).maxError, 0);
+        if (extension == ".npy") {
+            EXPECT_TRUE(readBytes("out.npy").ends_with(bytes));
+        }
+    }
+    const WriteReport raw = write("out_5x1x1_float64.raw", readCompared("in.nrrd", keep, {}));
+    EXPECT_EQ(raw.notes, std::vector<std::string>{"out_5x1x1_float64.raw: " + type +
+                                                  " stored as float64, which is off by up to 1"});
+    EXPECT_FALSE(raw.lossless);
+    EXPECT_EQ(raw.maxError, 1);
+    EXPECT_EQ(readBytes("out_5x1x1_float64.raw"),
+              bytesOf(std::vector<double>(values.begin(), values.end())));
+
+    // OpenVDB has no unsigned ones.
+    Warnings warnings;
+    const Volume volume = readVolume("in.nrrd", keep, warnings.listener());
+    EXPECT_EQ(volume.readError, vdbError);
+    EXPECT_EQ(warnings.lines.size(), vdbError > 0 ? 1 : 0);
+    const WriteReport vdb = write("out.vdb", volume);
+    const bool isSaid = type == "uint64" && vdbError == 0;
+    EXPECT_EQ(vdb.notes,
+              isSaid ? std::vector<std::string>{"out.vdb: uint64 stored as int64, which holds "
+                                                "every value"}
+                     : std::vector<std::string>{});
+    EXPECT_EQ(compareVolumes(readCompared("in.nrrd", keep, {}), readKept("out.vdb")).maxError,
+              vdbError);
+}
+
+TEST(WriteDense, IntegersBeyondDoubles) {
+    constexpr std::int64_t kOdd = (std::int64_t{1} << 53) + 1;
+    constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+    expectWholeNumbers<std::int64_t>("int64", {0, kOdd, -kOdd, kMost, -kMost - 1}, 0);
+    expectWholeNumbers<std::uint64_t>("uint64", {0, kOdd, kOdd + 2, 7, kMost}, 0);
+    expectWholeNumbers<std::uint64_t>(
+        "uint64", {0, kOdd, std::uint64_t(kMost) + 1, ~std::uint64_t{0}, kMost}, 1);
 }
 
 TEST(WriteDense, RawBytesComeBack) {

@@ -8,6 +8,7 @@
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
+#include "ingest/read_compared.h"
 #include "listener_part.h"
 #include "optics/read_label_table.h"
 #include "options/input_options.h"
@@ -92,7 +93,7 @@ std::vector<Volume> readInput(const ConvertCommand& command, const std::filesyst
                               const Listener& listener, bool& complete) {
     std::vector<Volume> volumes;
     if (!command.files.toVdb()) {
-        volumes.push_back(readVolume(input, command.read, listener));
+        volumes.push_back(readCompared(input, command.read, listener));
         return volumes;
     }
     ReadOptions reading = command.read;

@@ -112,6 +112,7 @@ CodeBook fixedBook(RawType type) {
 struct Survey {
     double bulkMagnitude = 0;      // as for ErrorMeter
     double low = 0, high = 0;      // of the values
+    bool ints = true;              // as ValueCensus::ints
     std::vector<double> frequent;  // which may be the most frequent one
 };
 
@@ -132,7 +133,8 @@ Survey chooseBook(const DenseSource& source, const ReadOptions& options, const L
     if (isReal && !real) whole.census.exact = isWithinDoubles(whole.census);
     whole.census.frequent = frequentOf(whole);
     volume.codeBook = chooseBook(whole.census, real, options, source.where);
-    Survey survey{bulkMagnitude(whole.census), whole.census.min, whole.census.max, {}};
+    Survey survey{
+        bulkMagnitude(whole.census), whole.census.min, whole.census.max, whole.census.ints, {}};
     for (const FrequentValue& one : whole.census.frequent) survey.frequent.push_back(one.value);
     return survey;
 }
@@ -287,16 +289,16 @@ std::shared_ptr<Tree> readTree(const DenseSource& source, std::optional<double> 
     return tree;
 }
 
-// @param keepUnsigned  whether uint64 becomes int64 of the same bits
+// @param asInt64  whether uint64 becomes int64 of the same bits
 std::shared_ptr<openvdb::TreeBase> readSourceTree(const DenseSource& source,
-                                                  std::optional<double> nonFinite,
-                                                  bool keepUnsigned, const Listener& listener) {
-    if (keepUnsigned) return readTree<openvdb::Int64Tree>(source, nonFinite, listener);
+                                                  std::optional<double> nonFinite, bool asInt64,
+                                                  const Listener& listener) {
+    if (asInt64) return readTree<openvdb::Int64Tree>(source, nonFinite, listener);
     switch (source.type) {
         case RawType::kFloat32:
             return readTree<openvdb::FloatTree>(source, nonFinite, listener);
         case RawType::kFloat64:
-        case RawType::kUint64:  // beyond what an Int64Tree holds
+        case RawType::kUint64:
             return readTree<openvdb::DoubleTree>(source, nonFinite, listener);
         case RawType::kUint32:
         case RawType::kInt64:
@@ -306,12 +308,11 @@ std::shared_ptr<openvdb::TreeBase> readSourceTree(const DenseSource& source,
     }
 }
 
-TreeGrid readSourceGrid(const DenseSource& source, std::optional<double> nonFinite,
-                        bool keepUnsigned, const Listener& listener) {
-    TreeGrid grid{readSourceTree(source, nonFinite, keepUnsigned, listener),
+TreeGrid readSourceGrid(const DenseSource& source, std::optional<double> nonFinite, bool asInt64,
+                        const Listener& listener) {
+    TreeGrid grid{readSourceTree(source, nonFinite, asInt64, listener),
                   {},
                   makeMapIfAny(source.worldFromIndex)};
-    if (keepUnsigned) grid.metadata.insert(kSourceTypeKey, std::string(rawTypeName(source.type)));
     grid.metadata.insert(openvdb::GridBase::META_GRID_NAME, source.name);
     return grid;
 }
@@ -431,8 +432,8 @@ Volume readWithNothing(const DenseSource& source, const ReadOptions& options,
     return volume;
 }
 
-// @param mayKeepUnsigned  as readDenseUnsigned
-Volume read(const DenseSource& source, const ReadOptions& options, bool mayKeepUnsigned,
+// @param anyUnsigned  as readDenseUnsigned
+Volume read(const DenseSource& source, const ReadOptions& options, bool anyUnsigned,
             const Listener& listener) {
     if (source.nothing) return readWithNothing(source, options, listener);
     const double scanned = needsScan(source.type) ? 0.5 : 0.0;
@@ -441,9 +442,9 @@ Volume read(const DenseSource& source, const ReadOptions& options, bool mayKeepU
     Survey survey;
     if (needsScan(source.type))
         survey = chooseBook(source, options, partOf(listener, 0, scanned), volume);
-    const bool keepUnsigned = mayKeepUnsigned && options.keepSource &&
-                              source.type == RawType::kUint64 && !volume.codeBook.isExact();
-    if (keepUnsigned) volume.readError = 0;
+    const bool asInt64 = options.keepSource && source.type == RawType::kUint64 &&
+                         !volume.codeBook.isExact() && (anyUnsigned || survey.ints);
+    if (asInt64) volume.readError = 0;
     warnOfChanges(source, options, volume, listener);
     const bool keep = (options.keepSource || options.keepInexact) && !volume.codeBook.isExact();
     const bool later = readsLater(source, options);
@@ -463,7 +464,7 @@ Volume read(const DenseSource& source, const ReadOptions& options, bool mayKeepU
     }
     if (keep) {
         volume.source = std::make_shared<const SourceGrid>(SourceGrid{readSourceGrid(
-            source, options.nanValue.value_or(0), keepUnsigned, partOf(listener, coded, 1))});
+            source, options.nanValue.value_or(0), asInt64, partOf(listener, coded, 1))});
     }
 
     volume.name = source.name;

@@ -24,4 +24,10 @@ struct SourceGrid {
     openvdb::GridBase::ConstPtr given = nullptr;
 };
 
+/// Whether integers of the source are unsigned ones by their bits. Their type says so: no .vdb has
+/// it.
+inline bool holdsUnsigned(const Volume& volume) {
+    return volume.source && volume.type == "uint64" && volume.source->grid.as<openvdb::Int64Tree>();
+}
+
 }  // namespace deltasplat

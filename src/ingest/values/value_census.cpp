@@ -18,6 +18,7 @@ void ValueCensus::append(const ValueCensus& next) {
     whole = whole && next.whole;
     exact = exact && next.exact;
     floats = floats && next.floats;
+    ints = ints && next.ints;
     rounding = std::max(rounding, next.rounding);
     distinct.append(next.distinct);
     survey.append(next.survey);

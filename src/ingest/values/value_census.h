@@ -31,6 +31,7 @@ struct ValueCensus {
     bool whole = true;    ///< every value is a whole number, and none is -0
     bool exact = true;    ///< a double holds every value
     bool floats = true;   ///< a float holds every value
+    bool ints = true;     ///< an int64 holds every value, of integers of 64 bits
     double rounding = 0;  ///< largest difference between an integer and its nearest double
     DistinctValues distinct;
     ValueSurvey survey;  ///< unless it was skipped
@@ -53,8 +54,10 @@ struct ValueCensus {
         } else {
             constexpr std::int64_t kMost = std::int64_t{1} << 53;
             exact = exact && std::int64_t(value) >= -kMost && std::int64_t(value) <= kMost;
-            if constexpr (std::is_same_v<T, std::uint64_t>)
+            if constexpr (std::is_same_v<T, std::uint64_t>) {
+                ints = ints && std::int64_t(value) >= 0;
                 rounding = std::max(rounding, off(value));
+            }
         }
         distinct.add(number);
         if (!skipSurvey) survey.add(number);
