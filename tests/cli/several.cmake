@@ -71,13 +71,13 @@ foreach(file ball.vdb cube_8x8x8_uint8.raw stack.1.pgm)
         string(REPLACE ";" " " name "${command}")
         string(MAKE_C_IDENTIFIER "${name}" name)
         deltasplat_cli_test(several.no_volumes.${name} EXIT 2 ARGS ${command} --volume 1
-            STDERR "deltasplat: --volume: got 1; expected it with a .nii, .nrrd, .npy or .tif input")
+            STDERR "deltasplat: --volume: got 1; expected it with a .nii, .nrrd, .mha, .npy or .tif input")
         deltasplat_cli_test(several.no_series.${name} EXIT 2 ARGS ${command} --series 1.2
             STDERR "deltasplat: --series: got 1.2; expected it with a DICOM input")
     endforeach()
 endforeach()
 deltasplat_cli_test(several.no_volumes.diff EXIT 4 ARGS diff ball.vdb ball.vdb --volume 0
-    STDERR "deltasplat: --volume: got 0; expected it with a .nii, .nrrd, .npy or .tif input")
+    STDERR "deltasplat: --volume: got 0; expected it with a .nii, .nrrd, .mha, .npy or .tif input")
 deltasplat_cli_test(several.series_of_nifti EXIT 2 ARGS info several.nii --series 1.2
     STDERR "deltasplat: --series: got 1.2; expected it with a DICOM input")
 foreach(text -1 1.5 all 99999999999999999999)
@@ -95,7 +95,7 @@ deltasplat_bad_input(volumes_endless
     "endless.nii: got dims 4x3x2x32767x32767x32767x32767; expected at most 4611686018427387904 bytes"
     endless.nii --volume 0)
 
-if(NOT DELTASPLAT_ITK)
+if(NOT DELTASPLAT_DICOM)
     return()
 endif()
 set(all "1.2.1 (CT, Thorax 1.5 mm, 3x2x4), 1.2.2 (CT, Scout, 5x2x4), 1.2.3 (SR, Dose report, 1 file)")

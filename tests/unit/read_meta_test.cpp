@@ -177,6 +177,50 @@ void expectRefusedMeta(const std::string& message, const Meta& meta, const std::
     expectRefused("a.mha: " + message, "a.mha");
 }
 
+// Axes behind the third that is longer than a voxel count volumes.
+TEST(ReadMeta, SeveralVolumes) {
+    const TempFolder folder;
+    Meta meta;
+    meta.axes = 6;
+    meta.sizes = "4 3 1 2 3 2";
+    meta.offset = "10 20 0 30 40 50";
+    meta.spacing = "2 3 9 4 5 6";
+    meta.matrix = "1 0 0 0 0 0 0 1 0 0 0 0 0 0 1 0 0 0 0 0 0 1 0 0 0 0 0 0 1 0 0 0 0 0 0 1";
+    const std::vector<std::uint16_t> values = ramp<std::uint16_t>(24 * 6);
+    std::string numbers;
+    for (const int value : values) numbers += std::to_string(value) + " ";
+    writeBytes("raw.mha", meta.text() + bytesOf(values));
+    meta.packed = "True";
+    writeBytes("packed.mha", meta.text() + packed(bytesOf(values)));
+    meta.packed = "False";
+    meta.binary = "False";
+    writeBytes("text.mha", meta.text() + numbers);
+    for (const std::string file : {"raw.mha", "packed.mha", "text.mha"}) {
+        SCOPED_TRACE(file);
+        expectRefused(file +
+                          ": got 6 volumes (sizes 4x3x1x2x3x2); expected one, chosen by "
+                          "`volume` 0 to 5",
+                      file);
+        ReadOptions options;
+        for (const int chosen : {0, 1, 5}) {
+            options.volume = chosen;
+            const Volume volume = readVolume(file, options);
+            EXPECT_EQ(volume.box.dims(), glm::ivec3(4, 3, 2));
+            EXPECT_EQ(volume.worldFromIndex,
+                      glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1));
+            EXPECT_EQ(valuesOf(volume), ramp<double>(24, 24 * chosen));
+        }
+        writeBytes("cut" + file, readBytes(file).substr(0, readBytes(file).size() - 20));
+        options.volume = 5;
+        expectInputError("cut" + file, options);
+    }
+    meta = {};
+    meta.axes = 5;
+    meta.sizes = "2 2 2 1073741824 1073741824";
+    expectRefusedMeta("got sizes 2x2x2x1073741824x1073741824; expected at most 1073741824 volumes",
+                      meta, "");
+}
+
 TEST(ReadMetaError, Headers) {
     const TempFolder folder;
     Meta meta;

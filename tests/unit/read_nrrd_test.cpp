@@ -594,6 +594,10 @@ TEST(ReadNrrd, LayersOfSegments) {
     options.volume = 1;
     EXPECT_EQ(valuesOf(readVolume("d.nrrd", options)),
               (std::vector<double>{0, 0, 1, 1, 1, 0, 2, 3}));
+    behind.emplace_back("encoding", "ascii");
+    writeBytes("e.nrrd", nrrd(behind) + "\n0 1 2 1 0 2 1 0 0 0 1 1 1 0 2 3\n");
+    EXPECT_EQ(valuesOf(readVolume("e.nrrd", options)),
+              (std::vector<double>{0, 0, 1, 1, 1, 0, 2, 3}));
 }
 
 TEST(ReadNrrd, LinesEndWithCrLf) {

@@ -67,10 +67,10 @@ void addInputOptions(CLI::App& app, ReadOptions& options) {
 
     OptionGroup several(app, "Input, several volumes");
     several.addValue("--volume", "N", options.volume, wholeNumber(),
-                     "NIfTI, NRRD and .npy of more than three axes, TIFF of several channels\n"
-                     "or times: which volume, from 0 on (without it they are an error; info\n"
-                     "tells how many there are); .seg.nrrd: which layer (without it all as\n"
-                     "one, later segments on top)");
+                     "NIfTI, NRRD, MetaImage and .npy of more than three axes, TIFF of several\n"
+                     "channels or times: which volume, from 0 on (without it they are an error;\n"
+                     "info tells how many there are); .seg.nrrd: which layer (without it all\n"
+                     "as one, later segments on top)");
     several.addValue("--series", "UID", options.series, anyText(),
                      "DICOM folder of several series: which one (without it they are\n"
                      "an error; info lists them)");
@@ -131,8 +131,9 @@ void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesy
     const bool anyNpy = formats.contains(InputKind::Format::kNpy);
     const bool anyImages = formats.contains(InputKind::Format::kImages);
     const bool mayBeSeveral = anyNpy || anyTiff || formats.contains(InputKind::Format::kNifti) ||
-                              formats.contains(InputKind::Format::kNrrd);
-    requireChoice(app, "--volume", mayBeSeveral, "a .nii, .nrrd, .npy or .tif");
+                              formats.contains(InputKind::Format::kNrrd) ||
+                              formats.contains(InputKind::Format::kMetaImage);
+    requireChoice(app, "--volume", mayBeSeveral, "a .nii, .nrrd, .mha, .npy or .tif");
     requireChoice(app, "--series", formats.contains(InputKind::Format::kDicom), "a DICOM");
     const auto warnOf = [&](const std::vector<std::string>& options, const std::string& input) {
         const std::string remark = ": has no effect without " + input;

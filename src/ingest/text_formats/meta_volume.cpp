@@ -48,6 +48,7 @@ class MetaReader {
         readData();
         std::vector<std::size_t> axes(volume_.sizes.size());
         for (std::size_t i = 0; i < axes.size(); ++i) axes[i] = i;
+        takeVolumes(axes);
         takeThree(axes, volume_);
         place(axes);
         readRescale();
@@ -88,6 +89,21 @@ class MetaReader {
             refuse("NDims = " + std::to_string(axes),
                    std::to_string(volume_.sizes.size()) + ", as many as there are sizes");
         }
+    }
+
+    // The first three axes that are longer than a voxel are those of space; others count volumes.
+    void takeVolumes(std::vector<std::size_t>& axes) {
+        const auto isLong = [&](std::size_t axis) { return volume_.sizes[axis] > 1; };
+        if (std::ranges::count_if(axes, isLong) <= 3) return;
+        std::erase_if(axes, [&](std::size_t axis) { return !isLong(axis); });
+        double volumes = 1;
+        for (std::size_t i = 3; i < axes.size(); ++i) volumes *= double(volume_.sizes[axes[i]]);
+        constexpr double kMost = 0x1p30;
+        if (volumes > kMost) {
+            refuse("sizes " + volume_.sizesText(), "at most " + numberText(kMost) + " volumes");
+        }
+        volume_.volumes = std::int64_t(volumes);
+        axes.resize(3);
     }
 
     void readValues() {

@@ -205,7 +205,8 @@ class TextValues {
     std::size_t held_ = 0, used_ = 0;
 };
 
-DenseSource sourceOfText(const TextVolume& volume, const RawLayout& layout) {
+// @param passed  how many volumes lie before the one that is read
+DenseSource sourceOfText(const TextVolume& volume, const RawLayout& layout, std::int64_t passed) {
     DenseSource source;
     source.dims = layout.dims;
     source.type = layout.type;
@@ -220,8 +221,8 @@ DenseSource sourceOfText(const TextVolume& volume, const RawLayout& layout) {
         refuseFile(volume.dataFile, numberText(held) + " bytes of data",
                    "enough for " + dataText(volume));
     }
-    source.forEachLayer = [volume, layout](const DenseSource::LayerUse& use,
-                                           const Listener& listener) {
+    source.forEachLayer = [volume, layout, passed](const DenseSource::LayerUse& use,
+                                                   const Listener& listener) {
         TextValues values(volume);
         const auto pixels = std::size_t(layout.dims.x) * std::size_t(layout.dims.y);
         const int slices = int(layout.dims.z);
@@ -230,6 +231,10 @@ DenseSource sourceOfText(const TextVolume& volume, const RawLayout& layout) {
             pixels * std::size_t(most) * std::size_t(rawTypeBytes(layout.type));
         requireMemory(volume.header.string(), double(bytes));
         const auto layer = std::make_unique_for_overwrite<std::byte[]>(bytes);
+        for (std::int64_t slice = 0; slice < passed * slices; ++slice) {
+            values.read(pixels, layer.get());
+            listener.report(0);
+        }
         for (int first = 0; first < slices; first += most) {
             const int count = std::min(most, slices - first);
             values.read(pixels * std::size_t(count), layer.get());
@@ -372,7 +377,7 @@ DenseSource openTextVolume(const TextVolume& volume, const ReadOptions& options,
         file.volume = volume.interleaved ? 0 : chosen;
         source = denseSourceOf(file);
     } else {
-        source = sourceOfText(volume, layout);
+        source = sourceOfText(volume, layout, volume.interleaved ? 0 : chosen);
     }
     source.where = volume.header.string();
     source.name = nameWithoutExtensions(volume.header);

@@ -290,7 +290,7 @@ ln -s images linked
 usage "--output: got images/../images/b.png; expected another file than the inputs" 'images/a*.png' \
     -o 'images/../images/b{dir}.png'
 usage "--output: got linked/a.png; expected another file than the inputs" 'images/a*.png' -o 'linked/{name}.png'
-usage "--volume: got 1; expected it with a .nii, .nrrd, .npy or .tif input" 'shots/*.vdb' -o 'u/{name}.png' --volume 1
+usage "--volume: got 1; expected it with a .nii, .nrrd, .mha, .npy or .tif input" 'shots/*.vdb' -o 'u/{name}.png' --volume 1
 usage "--contact-sheet: got 1x1 for 2 pictures; expected room for all of them" 'shots/*.vdb' -o u.png \
     --contact-sheet 1x1
 usage "--output: got u/{name}.png with --contact-sheet; expected one file" 'shots/*.vdb' \
