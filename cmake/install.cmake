@@ -8,10 +8,10 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/deltasplat-config-version
                                  COMPATIBILITY SameMinorVersion)
 # What the library was built with, so that its users look for the same.
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/deltasplat-options.cmake @ONLY
-     CONTENT "set(DELTASPLAT_ITK @DELTASPLAT_ITK@)\n")
+     CONTENT "set(DELTASPLAT_DICOM @DELTASPLAT_DICOM@)\n")
 install(FILES ${PROJECT_BINARY_DIR}/deltasplat-config-version.cmake
               ${PROJECT_BINARY_DIR}/deltasplat-options.cmake
-              cmake/deltasplat-config.cmake cmake/dependencies.cmake cmake/find_itk.cmake
+              cmake/deltasplat-config.cmake cmake/dependencies.cmake cmake/find_gdcm.cmake
         DESTINATION ${DELTASPLAT_CMAKE_DIR})
 # What there is to read, where the links of README.md lead.
 if(PROJECT_IS_TOP_LEVEL)

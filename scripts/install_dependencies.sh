@@ -17,9 +17,9 @@ libraries=(
 )
 packages=("${tools[@]}" "${headers[@]}")
 case ${1:-} in
-    --to-build) packages+=("${libraries[@]}" libinsighttoolkit5-dev) ;;
+    --to-build) packages+=("${libraries[@]}" libgdcm-dev) ;;
     --aarch64) packages+=(g++-aarch64-linux-gnu qemu-user "${libraries[@]/%/:arm64}") ;;
-    '') packages+=("${libraries[@]}" libinsighttoolkit5-dev clang-format clang-tidy
+    '') packages+=("${libraries[@]}" libgdcm-dev clang-format clang-tidy
         shellcheck python3 debootstrap debian-archive-keyring) ;;
     *)
         echo "install_dependencies.sh: got $1; expected nothing, --to-build or --aarch64" >&2

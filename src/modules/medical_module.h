@@ -10,7 +10,7 @@
 
 namespace deltasplat {
 
-/// What is read through ITK and GDCM, as ImageModule is of OpenImageIO.
+/// What is read through GDCM, as ImageModule is of OpenImageIO.
 struct MedicalModule {
     std::vector<DicomSeries> (*findSeries)(const std::filesystem::path& input,
                                            const std::vector<std::filesystem::path>& files);

@@ -38,7 +38,7 @@ set_tests_properties(cli.delta.exact PROPERTIES LABELS cli TIMEOUT 120)
 add_test(NAME cli.delta.input_bytes
     COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/scripts/input_bytes.sh $<TARGET_FILE:deltasplat_tool>
     ${CMAKE_CURRENT_BINARY_DIR}/cli/input_bytes ${DELTASPLAT_FIXTURES} ${DELTASPLAT_CASE_FILES}
-    ${DELTASPLAT_ITK})
+    ${DELTASPLAT_DICOM})
 set_tests_properties(cli.delta.input_bytes PROPERTIES LABELS cli TIMEOUT 120
                      FIXTURES_REQUIRED cli_files)
 deltasplat_cli_test(delta.max_error EXIT 1

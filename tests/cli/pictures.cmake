@@ -51,7 +51,7 @@ deltasplat_script_test(few_threads few_threads.sh ARGS ${tool} ${DELTASPLAT_FIXT
 deltasplat_script_test(unnamed_grid unnamed_grid.sh ARGS ${tool} ${DELTASPLAT_FIXTURES}/unnamed.vdb)
 set_tests_properties(cli.few_threads PROPERTIES SKIP_RETURN_CODE 77 FIXTURES_REQUIRED cli_files)
 deltasplat_script_test(inputs_kept inputs_kept.sh
-    ARGS ${tool} ${scratch}/inputs_kept $<BOOL:${DELTASPLAT_ITK}>)
+    ARGS ${tool} ${scratch}/inputs_kept $<BOOL:${DELTASPLAT_DICOM}>)
 deltasplat_script_test(full_disk.deep full_disk.sh
     ARGS ${tool} ${scratch}/full_disk_deep full.exr
          render input_32x32x32_uint8.raw -o full.exr --size 400x400 --deep)

@@ -67,7 +67,7 @@ TEST_F(FormatsData, LettersOfTheMniBrain) {
     EXPECT_EQ(left, 349);
 }
 
-#if DELTASPLAT_ITK
+#if DELTASPLAT_DICOM
 
 TEST_F(FormatsData, MrKnee) {
     const Volume knee = read("mr_knee/MRknee_8bit.mhd");

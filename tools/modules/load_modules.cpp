@@ -38,7 +38,7 @@ void requireMemoryOf(const std::string& name) {
     };
     static constexpr Library kLibraries[] = {{"openvdb", "OpenVDB's library", 28},
                                              {"images", "OpenImageIO's library", 112},
-                                             {"medical", "ITK's library", 19},
+                                             {"medical", "GDCM's library", 19},
                                              {"exr", "OpenEXR's library", 4}};
     for (const Library& library : kLibraries)
         if (name == library.module) requireMemory(library.name, library.mebibytes * 0x1p20);

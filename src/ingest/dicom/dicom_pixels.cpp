@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels that are not packed are read here. For others GDCM, with which ITK reads DICOM, gets a
-// file made from what it needs: the packed pixels and the numbers that describe them, which are the
-// packed picture's own. It would trust all else that a file holds, and end the process where that
-// is wrong.
+// Pixels that are not packed are read here. For others GDCM gets a file made from what it needs:
+// the packed pixels and the numbers that describe them, which are the packed picture's own. It
+// would trust all else that a file holds, and end the process where that is wrong.
 #include "ingest/dicom/dicom_pixels.h"
 
 #include <gdcmImage.h>

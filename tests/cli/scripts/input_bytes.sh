@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Checks that input_bytes of --stats are those of every file of the input, as it was before writing.
-# Usage: input_bytes.sh PROGRAM SCRATCH FIXTURES DATA ITK
+# Usage: input_bytes.sh PROGRAM SCRATCH FIXTURES DATA DICOM
 #   FIXTURES  folder with ball.vdb, detached.nhdr and detached.raw
 #   DATA      folder with stack.1.pgm and stack.2.pgm
-#   ITK       ON if the program reads NRRD
+#   DICOM     ON if the program reads DICOM
 set -euo pipefail
 program=$1 scratch=$2 fixtures=$3 data=$4 itk=$5
 rm -rf "$scratch"

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Asks every command to write over a file that its input is made of, and checks that it refuses (2)
 # and that the file is as before.
-# Usage: inputs_kept.sh PROGRAM SCRATCH ITK   (ITK: whether the program reads NRRD)
+# Usage: inputs_kept.sh PROGRAM SCRATCH DICOM   (whether the program reads DICOM)
 set -euo pipefail
 program=$1 scratch=$2 itk=$3
 rm -rf "$scratch"

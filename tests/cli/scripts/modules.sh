@@ -22,7 +22,7 @@ links/volumes render in.vdb -o link.jpg --size 32x32 -qq --background 0,0,0
 expect_same link.jpg away.jpg
 
 # Only what is asked for is loaded.
-loaded() { LD_DEBUG=files "$@" 2>&1 >/dev/null | grep -o 'lib\(OpenEXR\|OpenImageIO\|ITKCommon\)\b' | sort -u; }
+loaded() { LD_DEBUG=files "$@" 2>&1 >/dev/null | grep -o 'lib\(OpenEXR\|OpenImageIO\|gdcmMSFF\)\b' | sort -u; }
 for command in --version "info in.vdb" "convert in.vdb out.nrrd" "render in.vdb -o out.png --size 32x32"; do
     # shellcheck disable=SC2086
     [[ -z $(loaded "$program" $command) ]] || fail "$command: loads $(loaded "$program" $command)"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands in for what reads through ITK, where the library is built without it.
+// Stands in for what reads through GDCM, where the library is built without it.
 #include "deltasplat/error.h"
 #include "modules/medical_module.h"
 
@@ -8,7 +8,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& input, const std::string& got) {
     throw Error(ErrorCode::kInput,
-                gotExpected(input.string(), got, "a build with DELTASPLAT_ITK=ON to read DICOM"));
+                gotExpected(input.string(), got, "a build with DELTASPLAT_DICOM=ON to read DICOM"));
 }
 
 }  // namespace
