@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: ITU-T T.81 (JPEG), annex B: frame headers; T.87 (JPEG-LS), annex C; T.800 (JPEG 2000),
-// annexes A and I: the SIZ segment and the boxes around a code stream.
+// Based on: ITU-T T.800 (JPEG 2000), annexes A and I: the SIZ segment and the boxes around a code
+// stream.
 #include "ingest/dicom/dicom_stream.h"
+
+#include "ingest/images/jpeg_frame.h"
 
 namespace deltasplat {
 namespace {
@@ -50,30 +52,18 @@ std::optional<DicomStream> readSize(std::string_view bytes) {
     return stream;
 }
 
-// A frame header is among the segments before the first scan.
 std::optional<DicomStream> readFrame(std::string_view bytes) {
-    const BigEndian header(bytes);
-    std::size_t place = 2;
-    while (place + 10 <= bytes.size()) {
-        if (header.number(place, 1) != 0xff) return {};
-        const auto marker = int(header.number(place + 1, 1));
-        if (marker == 0xff) {  // fills up
-            ++place;
-            continue;
-        }
-        const bool isTable = marker == 0xc4 || marker == 0xc8 || marker == 0xcc;
-        if ((marker >= 0xc0 && marker <= 0xcf && !isTable) || marker == 0xf7) {
-            DicomStream stream;
-            stream.bits = int(header.number(place + 4, 1));
-            stream.rows = header.number(place + 5, 2);
-            stream.columns = header.number(place + 7, 2);
-            stream.components = int(header.number(place + 9, 1));
-            return stream;
-        }
-        if (marker == 0xda || marker == 0xd9) return {};
-        place += 2 + header.number(place + 2, 2);
-    }
-    return {};
+    std::size_t place = 0;
+    const std::optional<JpegFrame> frame = findJpegFrame([&] {
+        return place < bytes.size() ? int(static_cast<unsigned char>(bytes[place++])) : -1;
+    });
+    if (!frame) return {};
+    DicomStream stream;
+    stream.columns = std::uint64_t(frame->columns);
+    stream.rows = std::uint64_t(frame->rows);
+    stream.components = frame->components;
+    stream.bits = frame->bits;
+    return stream;
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: the OpenEXR project, "OpenEXR File Layout"; ITU-T T.81 (JPEG), annex B; Microsoft's
-// BITMAPINFOHEADER.
+// Based on: the OpenEXR project, "OpenEXR File Layout"; Microsoft's BITMAPINFOHEADER.
 #include "ingest/images/image_claims.h"
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 #include "ingest/files/file_bytes.h"
 #include "ingest/files/file_name.h"
 #include "ingest/files/input_kind.h"
+#include "ingest/images/jpeg_frame.h"
 #include "ingest/images/tiff_pages.h"
 #include "memory.h"
 
@@ -48,13 +48,10 @@ class Reader {
         if (!ended()) ++place_;
         return value;
     }
-    // @param isBig  whether the first byte counts most
-    std::uint32_t number(int bytes, bool isBig = false) {
+    // The first byte counts least.
+    std::uint32_t number(int bytes) {
         std::uint32_t value = 0;
-        for (int i = 0; i < bytes; ++i) {
-            const std::uint32_t digit = byte();
-            value = isBig ? value << 8 | digit : value | digit << (8 * i);
-        }
+        for (int i = 0; i < bytes; ++i) value |= std::uint32_t(byte()) << (8 * i);
         return value;
     }
     // A text that ends with 0; ones of more than 255 bytes there are not in these files.
@@ -149,31 +146,18 @@ bool requireExr(const std::string& where, const FileBytes& file) {
     return mayThread;
 }
 
-// What comes in several passes is held whole. Decoders pass over what is no marker.
+// What comes in several passes is held whole.
 void requireJpeg(const std::string& where, const FileBytes& file) {
+    constexpr int kLastOfOnePass = 0xc1;
     Reader reader(file);
-    while (!reader.ended()) {
-        if (reader.byte() != 0xff) continue;
-        std::uint8_t marker = 0xff;
-        while (marker == 0xff && !reader.ended()) marker = reader.byte();
-        const bool isAlone = marker <= 0x01 || (marker >= 0xd0 && marker <= 0xd8);
-        if (isAlone) continue;
-        constexpr int kScan = 0xda, kTables = 0xc4, kOther = 0xc8, kArithmetic = 0xcc;
-        if (marker == kScan) return;
-        const std::uint32_t bytes = reader.number(2, true);
-        const bool isFrame = marker >= 0xc0 && marker <= 0xcf && marker != kTables &&
-                             marker != kOther && marker != kArithmetic;
-        if (!isFrame) {
-            reader.skip(bytes < 2 ? 0 : bytes - 2);
-            continue;
-        }
-        reader.skip(1);
-        const double height = reader.number(2, true), width = reader.number(2, true);
-        const double channels = reader.byte();
-        if (reader.ended()) return;
-        requireEnough(where, file, mostRatio(""), width, height, channels);
-        if (marker > 0xc1) requireClaimedMemory(where, 2 * width * height * channels);
-        return;
+    const std::optional<JpegFrame> frame = findJpegFrame([&] {
+        const int byte = reader.byte();
+        return reader.ended() ? -1 : byte;
+    });
+    if (!frame) return;
+    requireEnough(where, file, mostRatio(""), frame->columns, frame->rows, frame->components);
+    if (frame->marker > kLastOfOnePass) {
+        requireClaimedMemory(where, 2.0 * frame->columns * double(frame->rows) * frame->components);
     }
 }
 
