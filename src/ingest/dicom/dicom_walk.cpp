@@ -13,6 +13,7 @@
 
 #include "deltasplat/error.h"
 #include "ingest/dicom/dicom_sniff.h"
+#include "memory.h"
 #include "printable.h"
 
 namespace deltasplat {
@@ -25,6 +26,7 @@ constexpr std::uint32_t kSequenceEnd = 0xfffee0dd;
 constexpr std::uint32_t kTransferSyntax = 0x00020010;
 constexpr std::uint32_t kPixels = 0x7fe00010;
 constexpr int kMostDepth = 16;
+constexpr std::size_t kHeldBeside = 128;  // bytes that a value takes besides its own
 
 // Sequences whose items are kept: tables of values, real world values, and what frames have of
 // their own.
@@ -69,12 +71,17 @@ class Walk {
     }
 
     DicomElements run() {
+        const DicomSyntax syntax = syntax_;
         while (place_ < size_ && !elements_.isContents()) {
+            const std::uint64_t start = place_;
             try {
                 walkElement(size_, 0, &elements_);
-            } catch (const Error&) {
-                // What lies behind the pixels fills the file up, or says nothing that is needed.
-                if (!hasPixels_) throw;
+            } catch (const Error& error) {
+                if (error.code() != ErrorCode::kInput || !hasPixels_) throw;
+                syntax_ = syntax;
+                // What fills a file up says nothing, but elements that are cut behind the pixels
+                // may have said what those mean.
+                if (beginsElement(start)) throw;
                 break;
             }
         }
@@ -125,6 +132,15 @@ class Walk {
         return value;
     }
 
+    // What is kept takes more memory than it does in the file.
+    void hold(std::size_t bytes) {
+        constexpr std::size_t kAtOnce = 1 << 20;
+        held_ += bytes;
+        if (held_ < kAtOnce) return;
+        requireMemory(where_, double(held_));
+        held_ = 0;
+    }
+
     Head readHead(std::uint64_t end) {
         Head head;
         const std::uint32_t group = number(2, end);
@@ -155,6 +171,19 @@ class Walk {
         }
         goTo(here);
         return says;
+    }
+
+    // Whether what begins here, and cannot be read, is an element of those before the pixels in
+    // order: by its type, or as one of a group that is read.
+    bool beginsElement(std::uint64_t start) {
+        constexpr std::array<std::uint32_t, 9> kRead{0x0008, 0x0018, 0x0019, 0x0020, 0x0028,
+                                                     0x0029, 0x0040, 0x3004, 0x5200};
+        goTo(start);
+        if (size_ - place_ < 2) return false;
+        const std::uint32_t group = number(2, size_);
+        goTo(start);
+        return (syntax_.explicitTypes && group >= 8 && group < kPixels >> 16 && saysType()) ||
+               std::find(kRead.begin(), kRead.end(), group) != kRead.end();
     }
 
     // The group that says how the rest is written; it is itself always written in one way. A second
@@ -219,6 +248,7 @@ class Walk {
             pass(head.length, end);
             hasPixels_ = true;
         } else if (into != nullptr && head.length <= mostKept(head.tag)) {
+            hold(head.length + kHeldBeside);
             into->values.emplace(head.tag, take(head.length, end));
         } else {
             pass(head.length, end);
@@ -245,6 +275,7 @@ class Walk {
             if (head.tag != kItem) refusePlace("sequence holds something else than items");
             DicomItem* item = nullptr;
             if (into != nullptr) {
+                hold(3 * sizeof(DicomItem));  // more while they are moved
                 item = &into->emplace_back();
                 item->bigEndian = syntax_.bigEndian;
             }
@@ -292,6 +323,7 @@ class Walk {
     std::uint64_t place_ = 0;
     DicomSyntax syntax_;
     bool hasPixels_ = false;
+    std::size_t held_ = 0;  // since memory was asked for
     DicomElements elements_;
 };
 

@@ -55,8 +55,9 @@ struct DicomElements : DicomItem {
 /// twice, bytes behind the last element, a data set without its header, types of values where the
 /// header says that there are none, or none where it says that there are.
 /// Of a table of contents only the header is walked.
-/// @throw Error(kInput) if an element before the end of the pixels does not lie within the file, or
-///        within the one around it
+/// @throw Error(kInput) if an element does not lie within the file, or within the one around it,
+/// and
+///        is not what fills the file up behind the pixels; Error(kFailed) if memory is short
 DicomElements walkDicom(const std::filesystem::path& file);
 
 }  // namespace deltasplat
