@@ -20,10 +20,11 @@ std::string sizeText(const DicomSlice& slice) {
     return std::to_string(slice.columns) + "x" + std::to_string(slice.rows);
 }
 
-void requireAlike(const DicomSlice& first, const DicomSlice& other) {
+void requireAlike(const std::filesystem::path& input, const DicomSlice& first,
+                  const DicomSlice& other) {
     if (first.columns != other.columns || first.rows != other.rows) {
         refuse(other.file.string(), "a slice of " + sizeText(other),
-               sizeText(first) + ", as in " + first.name());
+               sizeText(first) + ", as in " + first.name(input));
     }
     // A thousandth of a voxel over a thousand voxels is one voxel.
     const double most =
@@ -31,19 +32,21 @@ void requireAlike(const DicomSlice& first, const DicomSlice& other) {
     if (glm::distance(first.alongRow, other.alongRow) > most ||
         glm::distance(first.alongColumn, other.alongColumn) > most) {
         refuse(other.file.string(), "a slice of another direction or pixel spacing",
-               "one parallel to " + first.name());
+               "one parallel to " + first.name(input));
     }
 }
 
 // A gap that is far from the usual one is a slice that is missing, or there twice.
-void requireEven(const std::string& folder, const std::vector<DicomSlice>& slices) {
+void requireEven(const std::filesystem::path& input, const std::vector<DicomSlice>& slices) {
     const glm::dvec3 normal = slices.front().normal();
     std::vector<double> gaps;
     for (std::size_t i = 1; i < slices.size(); ++i) {
         gaps.push_back(glm::dot(slices[i].position - slices[i - 1].position, normal));
         if (gaps.back() < 1e-4 * slices.front().thickness) {
-            refuse(folder, slices[i - 1].name() + " and " + slices[i].name() + " at the same place",
-                   "one slice at each place");
+            refuse(
+                input.string(),
+                slices[i - 1].name(input) + " and " + slices[i].name(input) + " at the same place",
+                "one slice at each place");
         }
     }
     std::vector<double> sorted = gaps;
@@ -51,14 +54,14 @@ void requireEven(const std::string& folder, const std::vector<DicomSlice>& slice
     const double usual = sorted[(sorted.size() - 1) / 2];
     for (std::size_t i = 0; i < gaps.size(); ++i) {
         if (std::abs(gaps[i] - usual) <= 0.25 * usual) continue;
-        refuse(folder,
-               slices[i].name() + " and " + slices[i + 1].name() + " " + numberText(gaps[i]) +
-                   " mm apart",
+        refuse(input.string(),
+               slices[i].name(input) + " and " + slices[i + 1].name(input) + " " +
+                   numberText(gaps[i]) + " mm apart",
                numberText(usual) + " mm as between the others (a slice may be missing)");
     }
 }
 
-void requireStraight(const std::string& folder, const std::vector<DicomSlice>& slices,
+void requireStraight(const std::filesystem::path& input, const std::vector<DicomSlice>& slices,
                      const glm::dvec3& step) {
     const DicomSlice& first = slices.front();
     const double most = std::max(glm::length(first.alongRow), glm::length(first.alongColumn));
@@ -67,7 +70,8 @@ void requireStraight(const std::string& folder, const std::vector<DicomSlice>& s
         const glm::dvec3 off = slices[i].position - (first.position + double(i) * step);
         const double aside = glm::length(off - normal * glm::dot(off, normal));
         if (aside <= most) continue;
-        refuse(folder, slices[i].name() + " " + numberText(aside) + " mm aside of the others",
+        refuse(input.string(),
+               slices[i].name(input) + " " + numberText(aside) + " mm aside of the others",
                "slices in one row");
     }
 }
@@ -78,7 +82,17 @@ glm::dvec3 DicomSlice::normal() const {
     return glm::normalize(glm::cross(alongRow, alongColumn));
 }
 
-DicomVolume arrangeSlices(const std::string& folder, std::vector<DicomSlice> slices) {
+std::string DicomSlice::name(const std::filesystem::path& input) const {
+    const std::string number = frame > 0 ? " frame " + std::to_string(frame) : "";
+    for (const std::filesystem::path& folder : {input, input.parent_path()}) {
+        const std::filesystem::path below = file.lexically_relative(folder);
+        if (!below.empty() && below != "." && *below.begin() != "..")
+            return below.string() + number;
+    }
+    return file.filename().string() + number;
+}
+
+DicomVolume arrangeSlices(const std::filesystem::path& input, std::vector<DicomSlice> slices) {
     const glm::dvec3 normal = slices.front().normal();
     // Files of equal place and so equal key are refused below; names make the order certain.
     std::sort(slices.begin(), slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {
@@ -87,15 +101,15 @@ DicomVolume arrangeSlices(const std::string& folder, std::vector<DicomSlice> sli
         if (placeA != placeB) return placeA < placeB;
         return std::tie(a.file, a.frame) < std::tie(b.file, b.frame);
     });
-    for (const DicomSlice& slice : slices) requireAlike(slices.front(), slice);
+    for (const DicomSlice& slice : slices) requireAlike(input, slices.front(), slice);
 
     const DicomSlice& first = slices.front();
     glm::dvec3 step = normal * first.thickness;
     if (slices.size() > 1) {
-        requireEven(folder, slices);
+        requireEven(input, slices);
         // A tilted gantry shifts each slice against the one before: the volume is sheared.
         step = (slices.back().position - first.position) / double(slices.size() - 1);
-        requireStraight(folder, slices, step);
+        requireStraight(input, slices, step);
     }
     DicomVolume volume;
     volume.worldFromIndex =

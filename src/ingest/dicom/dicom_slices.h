@@ -20,6 +20,7 @@ struct DicomPixels {
     bool words = true;
     using Piece = DicomElements::Piece;
     std::vector<Piece> pieces;  ///< without a table of offsets
+    Piece element;              ///< that the piece is a part of, if they are not packed
     int columns = 0;
     int rows = 0;
     DicomBits bits;
@@ -41,10 +42,8 @@ struct DicomSlice {
     double thickness = 1;         ///< along the normal; what a single slice goes by
 
     glm::dvec3 normal() const;
-    std::string name() const {
-        const std::string number = frame > 0 ? " frame " + std::to_string(frame) : "";
-        return file.filename().string() + number;
-    }
+    /// Returns its file's name, with the folders below the input, and the frame.
+    std::string name(const std::filesystem::path& input) const;
 };
 
 /// The slices of one volume, in order, and where they lie.
@@ -54,8 +53,8 @@ struct DicomVolume {
 };
 
 /// Sorts the slices of one series by their places.
-/// @param folder  for messages
+/// @param input  the folder, or a file in it, for messages
 /// @throw Error(kInput) if they are of several sizes or directions, or unevenly spaced
-DicomVolume arrangeSlices(const std::string& folder, std::vector<DicomSlice> slices);
+DicomVolume arrangeSlices(const std::filesystem::path& input, std::vector<DicomSlice> slices);
 
 }  // namespace deltasplat
