@@ -209,23 +209,28 @@ DicomCells unpackedCells(const DicomSlice& slice) {
     return cells;
 }
 
+// Big endian are words of two bytes, of which a cell of four bytes has the lower first, and of
+// which pictures of one byte a pixel may begin or end in the middle.
 DicomCells plainCells(const DicomSlice& slice) {
     const DicomPixels& pixels = slice.pixels;
+    const DicomPixels::Piece& piece = pixels.pieces.at(0);
+    const bool inWords = pixels.bigEndian && pixels.words;
     DicomCells cells;
     cells.bits = pixels.bits.allocated;
-    cells.bigEndian = pixels.bigEndian;
-    cells.bytes.resize(pixelCount(pixels) * std::size_t(cells.bits / 8));
-    requireMemory(slice.file.string(), double(cells.bytes.size()));
-    // Words of two bytes may hold pixels of one, the last of them alone.
-    const bool inWords = cells.bits == 8 && pixels.bigEndian && pixels.words;
-    const std::size_t held = cells.bytes.size();
-    if (inWords) cells.bytes.resize(held + held % 2);
-    const DicomPixels::Piece& piece = pixels.pieces.at(0);
-    readBytes(slice, {piece.start, std::min<std::uint64_t>(piece.length, cells.bytes.size())},
-              reinterpret_cast<char*>(cells.bytes.data()));
+    cells.bigEndian = pixels.bigEndian && !inWords;
+    const std::uint64_t before = inWords ? (piece.start - pixels.element.start) % 2 : 0;
+    std::uint64_t length = before + piece.length;
+    requireMemory(slice.file.string(), double(length));
+    if (inWords) {
+        const std::uint64_t end = pixels.element.start + pixels.element.length;
+        length = std::min(length + length % 2, end + before - piece.start);
+    }
+    cells.bytes.resize(std::size_t(length));
+    readBytes(slice, {piece.start - before, length}, reinterpret_cast<char*>(cells.bytes.data()));
     for (std::size_t i = 0; inWords && i + 1 < cells.bytes.size(); i += 2)
         std::swap(cells.bytes[i], cells.bytes[i + 1]);
-    cells.bytes.resize(held);
+    cells.bytes.erase(cells.bytes.begin(), cells.bytes.begin() + std::ptrdiff_t(before));
+    cells.bytes.resize(std::size_t(piece.length));
     return cells;
 }
 

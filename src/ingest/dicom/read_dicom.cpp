@@ -240,6 +240,7 @@ std::vector<DicomSlice> slicesOf(const std::filesystem::path& path, const DicomE
     first.pixels.bigEndian = elements.bigEndian;
     first.pixels.packed = elements.packed;
     first.pixels.words = elements.pixelWords;
+    if (!elements.packed && !elements.pixels.empty()) first.pixels.element = elements.pixels[0];
     if (elements.text(kPhotometric) == "MONOCHROME1")
         notes.push_back("MONOCHROME1, low values meant to be bright: values stay as they are");
 
