@@ -222,10 +222,20 @@ std::vector<std::vector<Piece>> picturesOf(const DicomElements& elements, const 
     return elements.packed ? pictures : plainPictures(elements, slice, frames);
 }
 
-// Where frames lie that are a way along the normal from the first: those of a dose.
+// Where the frames of a dose lie, of which only the first has a place.
 std::vector<double> frameOffsets(const DicomElements& elements, std::size_t frames) {
     std::vector<double> offsets = elements.decimals(kFrameOffsets, 1e9);
     return offsets.size() == frames ? offsets : std::vector<double>();
+}
+
+// Returns the way from the first frame. Offsets are along the normal, but are z of the patient
+// where the first is that of the first frame.
+glm::dvec3 wayToFrame(const DicomSlice& first, const std::vector<double>& offsets, std::size_t i) {
+    constexpr double kSame = 1e-3;
+    const glm::dvec3 normal = first.normal();
+    const bool isPlace = offsets[0] != 0 && std::abs(offsets[0] - first.position.z) < kSame &&
+                         std::abs(normal.z) > 1 - kSame;
+    return (isPlace ? glm::dvec3(0, 0, 1) : normal) * (offsets[i] - offsets[0]);
 }
 
 // Checks what a header says of its frames, of which there is one in most files. Their pixels are
@@ -262,7 +272,7 @@ std::vector<DicomSlice> slicesOf(const std::filesystem::path& path, const DicomE
         slice.pixels.pieces = std::move(pictures[i]);
         slice.meaning = meaningOf(path.string(), frame, slice.pixels.bits, notes);
         setPlace(frame, slice);
-        if (!offsets.empty()) slice.position += slice.normal() * (offsets[i] - offsets[0]);
+        if (!hasOwn && !offsets.empty()) slice.position += wayToFrame(slice, offsets, i);
         slices.push_back(std::move(slice));
     }
     return isMosaic(elements) && frames == 1 ? slicesOfMosaic(elements, slices[0], notes) : slices;
