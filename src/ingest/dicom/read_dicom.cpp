@@ -204,6 +204,14 @@ std::vector<std::vector<Piece>> plainPictures(const DicomElements& elements,
     return pictures;
 }
 
+// The byte that makes a length even is no picture.
+std::uint64_t plainCount(const DicomElements& elements, const DicomSlice& slice,
+                         std::size_t frames) {
+    const std::uint64_t needed = frames * pictureBytes(slice);
+    const std::uint64_t surplus = elements.pixelBytes() - needed;
+    return frames + (surplus == needed % 2 ? 0 : surplus / pictureBytes(slice));
+}
+
 // Returns the pieces of each frame. More pictures than the header has would be lost without a word.
 std::vector<std::vector<Piece>> picturesOf(const DicomElements& elements, const DicomSlice& slice,
                                            std::size_t frames) {
@@ -211,7 +219,7 @@ std::vector<std::vector<Piece>> picturesOf(const DicomElements& elements, const 
     std::vector<std::vector<Piece>> pictures;
     if (elements.packed) pictures = packedPictures(elements, slice, frames);
     const std::uint64_t count =
-        elements.packed ? pictures.size() : elements.pixelBytes() / pictureBytes(slice);
+        elements.packed ? pictures.size() : plainCount(elements, slice, frames);
     if (count != frames) {
         refuseFile(
             slice.file,
