@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "deltasplat/error.h"
+#include "memory.h"
 #include "number_text.h"
 #include "printable.h"
 
@@ -55,12 +56,42 @@ std::optional<double> decimal(const std::string& where, const DicomItem& item, s
     refuse(where, std::string(name) + " " + printable(item.text(tag)), "a number");
 }
 
-// The limit may lie above the value or below.
-std::optional<Span> paddingOf(const DicomItem& file, bool isSigned) {
-    const auto value = storedNumber(file, kPadding, isSigned);
+// The limit may lie above the value or below. Both are words that stand for the bits of a cell: one
+// of 8 bits has the lower byte, if the upper is 0 or repeats its sign.
+std::optional<Span> paddingOf(const DicomItem& file, const DicomBits& bits) {
+    const auto value = storedNumber(file, kPadding, bits.isSigned);
     if (!value) return {};
-    const std::int64_t limit = storedNumber(file, kPaddingLimit, isSigned).value_or(*value);
-    return Span{std::min(*value, limit), std::max(*value, limit)};
+    const std::int64_t limit = storedNumber(file, kPaddingLimit, bits.isSigned).value_or(*value);
+    const Span words{std::min(*value, limit), std::max(*value, limit)};
+    const auto isByte = [](std::int64_t word) {
+        const std::int64_t number = numberOfBits(std::uint64_t(word), 16, true);
+        return number >= -128 && number <= 255;
+    };
+    if (bits.allocated != 8 || !isByte(words.first) || !isByte(words.last)) return words;
+    const Span bytes{numberOfBits(std::uint64_t(words.first), 8, bits.isSigned),
+                     numberOfBits(std::uint64_t(words.last), 8, bits.isSigned)};
+    return bytes.first <= bytes.last ? bytes : words;
+}
+
+bool isWhole(double number) {
+    return number == std::floor(number);
+}
+
+// Returns the table that was made last if that is of the same item, or equal.
+template <typename Make>
+std::shared_ptr<const Table> tableOf(const DicomItem& item, DicomLastTable& last,
+                                     const Make& make) {
+    if (last.item == &item) return last.table;
+    Table table = make();
+    const std::vector<double>& values = table.values;
+    if (!values.empty()) {
+        const auto [low, high] = std::minmax_element(values.begin(), values.end());
+        table.range = {*low, *high, std::all_of(values.begin(), values.end(), isWhole)};
+    }
+    if (!last.table || *last.table != table)
+        last.table = std::make_shared<const Table>(std::move(table));
+    last.item = &item;
+    return last.table;
 }
 
 // Numbers of 8 bits come one in a byte, or one in a word of two.
@@ -81,8 +112,7 @@ std::vector<double> tableData(const DicomItem& item, std::size_t entries, int bi
     return values;
 }
 
-std::shared_ptr<const Table> modalityTable(const std::string& where, const DicomItem& item,
-                                           bool isSigned) {
+Table modalityTable(const std::string& where, const DicomItem& item, bool isSigned) {
     const std::vector<std::uint16_t> shape = item.words(kTableShape);
     if (shape.size() != 3) {
         refuse(where,
@@ -92,6 +122,7 @@ std::shared_ptr<const Table> modalityTable(const std::string& where, const Dicom
     }
     Table table;
     const std::size_t entries = shape[0] == 0 ? 65536 : shape[0];
+    requireMemory(where, 2.0 * sizeof(double) * double(entries));
     table.first = numberOfBits(shape[1], 16, isSigned);
     table.values = tableData(item, entries, shape[2]);
     if (table.values.size() < entries) {
@@ -99,7 +130,7 @@ std::shared_ptr<const Table> modalityTable(const std::string& where, const Dicom
                std::to_string(entries) + ", as its LUTDescriptor says");
     }
     table.values.resize(entries);
-    return std::make_shared<const Table>(std::move(table));
+    return table;
 }
 
 // The first and the last number that a real world value is given for.
@@ -116,38 +147,52 @@ std::optional<Span> realSpan(const DicomItem& item, bool isSigned) {
     return Span{std::int64_t(std::ceil(low[0])), std::int64_t(std::floor(high[0]))};
 }
 
+// Returns a table without values if there is none.
+Table realTable(const std::string& where, const DicomItem& item, const Span& span) {
+    const auto found = item.values.find(kRealTable);
+    if (found == item.values.end()) return {};
+    requireMemory(where, 2.0 * double(found->second.size()));
+    Table table{span.first, item.doubles(kRealTable), {}};
+    const auto entries = std::uint64_t(span.last - span.first) + 1;
+    if (!table.values.empty() && table.values.size() < entries) {
+        refuse(where, "a table of " + std::to_string(table.values.size()) + " real world values",
+               std::to_string(entries));
+    }
+    if (!table.values.empty()) table.values.resize(std::size_t(entries));
+    return table;
+}
+
 void setRealWorld(const std::string& where, const DicomItem& item, bool isSigned,
-                  DicomMeaning& meaning, std::vector<std::string>& notes) {
-    meaning.measured = realSpan(item, isSigned);
+                  DicomMeaning& meaning, DicomLastTable& last, DicomNotes& notes) {
+    const std::optional<Span> span = realSpan(item, isSigned);
+    const bool isEmpty = span && span->last < span->first;
+    if (span && !isEmpty) {
+        const auto table = tableOf(item, last, [&] { return realTable(where, item, *span); });
+        if (!table->values.empty()) {
+            meaning.measured = span;
+            meaning.table = table;
+            notes.add("values are those of a table of real world values, for there is no other");
+            return;
+        }
+    }
     const std::vector<double> slope = item.doubles(kRealSlope);
     const std::vector<double> intercept = item.doubles(kRealIntercept);
-    std::vector<double> values = item.doubles(kRealTable);
-    const bool isEmpty = meaning.measured && meaning.measured->last < meaning.measured->first;
-    if (!values.empty() && meaning.measured && !isEmpty) {
-        const auto entries = std::uint64_t(meaning.measured->last - meaning.measured->first) + 1;
-        if (values.size() < entries) {
-            refuse(where, "a table of " + std::to_string(values.size()) + " real world values",
-                   std::to_string(entries));
-        }
-        values.resize(std::size_t(entries));
-        meaning.table = std::make_shared<const Table>(Table{meaning.measured->first, values});
-        notes.push_back("values are those of a table of real world values, for there is no other");
-        return;
-    }
     if (slope.size() != 1 || intercept.size() != 1 || slope[0] == 0 || isEmpty) {
-        meaning.measured.reset();
-        notes.push_back("its real world value mapping is none; values are those stored");
+        notes.add("its real world value mapping is none; values are those stored");
         return;
     }
+    meaning.measured = span;
     meaning.rescale = {slope[0], intercept[0]};
-    notes.push_back("values are those of its real world value mapping, for there is no other (" +
-                    numberText(slope[0]) + " * stored + " + numberText(intercept[0]) + ")");
+    const std::string what = "values are those of its real world value mapping, for there is no ";
+    notes.add(
+        what + "other (" + numberText(slope[0]) + " * stored + " + numberText(intercept[0]) + ")",
+        what + "other (each slice has its own)");
 }
 
 // A slope of 0 would make all values one.
-double usableSlope(double slope, const char* name, std::vector<std::string>& notes) {
+double usableSlope(double slope, const char* name, DicomNotes& notes) {
     if (slope != 0) return slope;
-    notes.push_back(std::string(name) + " is 0, which makes all values one; 1 is taken");
+    notes.add(std::string(name) + " is 0, which makes all values one; 1 is taken");
     return 1;
 }
 
@@ -161,47 +206,63 @@ const DicomItem& DicomFrame::group(std::uint32_t sequence) const {
     return *file;
 }
 
+void DicomNotes::add(const std::string& line, const std::string& ofSeveral) {
+    const std::string& key = ofSeveral.empty() ? line : ofSeveral;
+    const auto found = std::find_if(lines_.begin(), lines_.end(),
+                                    [&](const auto& said) { return said.first == key; });
+    if (found == lines_.end()) {
+        lines_.emplace_back(key, line);
+    } else if (found->second != line) {
+        found->second.clear();
+    }
+}
+
+std::vector<std::string> DicomNotes::lines() const {
+    std::vector<std::string> lines;
+    for (const auto& [ofSeveral, line] : lines_) lines.push_back(line.empty() ? ofSeveral : line);
+    return lines;
+}
+
 DicomMeaning meaningOf(const std::string& where, const DicomFrame& frame, const DicomBits& bits,
-                       std::vector<std::string>& notes) {
+                       DicomLastTable& last, DicomNotes& notes) {
     DicomMeaning meaning;
-    meaning.padding = paddingOf(*frame.file, bits.isSigned);
+    meaning.padding = paddingOf(*frame.file, bits);
     const DicomItem& linear = frame.group(kTransformation);
     const auto slope = decimal(where, linear, kSlope, "RescaleSlope");
     const auto intercept = decimal(where, linear, kIntercept, "RescaleIntercept");
     if (const DicomItem* const table = frame.file->first(kModalityTable)) {
-        meaning.table = modalityTable(where, *table, bits.isSigned);
+        meaning.table =
+            tableOf(*table, last, [&] { return modalityTable(where, *table, bits.isSigned); });
         if (slope || intercept)
-            notes.push_back("values are those of its modality table; its rescale is not used");
+            notes.add("values are those of its modality table; its rescale is not used");
     } else if (const auto dose = decimal(where, *frame.file, kDoseScaling, "DoseGridScaling")) {
         meaning.rescale = {usableSlope(*dose, "DoseGridScaling", notes), 0};
     } else if (slope || intercept) {
+        if (!slope) notes.add("RescaleIntercept without RescaleSlope; 1 is taken");
+        if (!intercept) notes.add("RescaleSlope without RescaleIntercept; 0 is taken");
         meaning.rescale = {usableSlope(slope.value_or(1), "RescaleSlope", notes),
                            intercept.value_or(0)};
     } else {
         const DicomItem& holder = frame.group(kRealWorld);
         const DicomItem* const real =
             &holder == frame.file ? frame.file->first(kRealWorld) : &holder;
-        if (real != nullptr) setRealWorld(where, *real, bits.isSigned, meaning, notes);
+        if (real != nullptr) setRealWorld(where, *real, bits.isSigned, meaning, last, notes);
     }
     const DicomRange range = rangeOf(bits, meaning);
     if (!meaning.table && range.low == range.high && bits.stored > 1) {
-        notes.push_back("its slope " + numberText(meaning.rescale.slope) + " makes all values " +
-                        numberText(range.low));
+        notes.add("its slope " + numberText(meaning.rescale.slope) + " makes all values " +
+                      numberText(range.low),
+                  "slopes that make all values of a slice one");
     }
     return meaning;
 }
 
 DicomRange rangeOf(const DicomBits& bits, const DicomMeaning& meaning) {
-    const auto isWhole = [](double number) { return number == std::floor(number); };
-    if (!meaning.table) {
-        const double a = meaning.valueOf(bits.least());
-        const double b = meaning.valueOf(bits.most());
-        return {std::min(a, b), std::max(a, b),
-                isWhole(meaning.rescale.slope) && isWhole(meaning.rescale.intercept)};
-    }
-    const std::vector<double>& values = meaning.table->values;
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    return {*low, *high, std::all_of(values.begin(), values.end(), isWhole)};
+    if (meaning.table) return meaning.table->range;
+    const double a = meaning.valueOf(bits.least());
+    const double b = meaning.valueOf(bits.most());
+    return {std::min(a, b), std::max(a, b),
+            isWhole(meaning.rescale.slope) && isWhole(meaning.rescale.intercept)};
 }
 
 }  // namespace deltasplat

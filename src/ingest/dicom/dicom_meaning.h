@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ingest/dense/rescale.h"
@@ -31,6 +32,14 @@ inline std::int64_t numberOfBits(std::uint64_t cell, int bits, bool isSigned) {
     return std::int64_t(number) - (negative ? std::int64_t{1} << bits : 0);
 }
 
+/// The smallest and the largest value that stored numbers can have, and whether all are whole.
+struct DicomRange {
+    double low = 0;
+    double high = 0;
+    bool isWhole = true;
+    bool operator==(const DicomRange&) const = default;
+};
+
 /// What the stored numbers of a slice mean.
 struct DicomMeaning {
     /// Stored numbers from the first to the last.
@@ -43,6 +52,7 @@ struct DicomMeaning {
     struct Table {
         std::int64_t first = 0;
         std::vector<double> values;
+        DicomRange range;  ///< of the values
         bool operator==(const Table&) const = default;
     };
     std::optional<Span> padding;   ///< numbers that fill a picture up: nothing is there
@@ -72,20 +82,32 @@ struct DicomFrame {
     const DicomItem& group(std::uint32_t sequence) const;
 };
 
+/// What users may not expect of the values of slices, each said once.
+class DicomNotes {
+  public:
+    /// @param ofSeveral  what is said in place of lines that differ from slice to slice
+    void add(const std::string& line, const std::string& ofSeveral = "");
+    std::vector<std::string> lines() const;
+
+  private:
+    // By what is said of several slices; empty where they differ.
+    std::vector<std::pair<std::string, std::string>> lines_;
+};
+
+/// The table that was made last of one file: frames share what is one item's, or equal.
+struct DicomLastTable {
+    const DicomItem* item = nullptr;
+    std::shared_ptr<const DicomMeaning::Table> table;
+};
+
 /// Returns what the stored numbers of a frame mean.
 /// @param where  the file, for messages
+/// @param last   of the file's frames before
 /// @param notes  what users may not expect of it
-/// @throw Error(kInput) if a slope or a table is none
+/// @throw Error(kInput) if a slope or a table is none; Error(kFailed) if memory is short
 DicomMeaning meaningOf(const std::string& where, const DicomFrame& frame, const DicomBits& bits,
-                       std::vector<std::string>& notes);
+                       DicomLastTable& last, DicomNotes& notes);
 
-/// Returns the smallest and the largest value that stored numbers can have, and whether all are
-/// whole.
-struct DicomRange {
-    double low = 0;
-    double high = 0;
-    bool isWhole = true;
-};
 DicomRange rangeOf(const DicomBits& bits, const DicomMeaning& meaning);
 
 }  // namespace deltasplat

@@ -106,7 +106,7 @@ bool isMosaic(const DicomElements& elements) {
 }
 
 std::vector<DicomSlice> slicesOfMosaic(const DicomElements& elements, const DicomSlice& picture,
-                                       std::vector<std::string>& notes) {
+                                       DicomNotes& notes) {
     const Layout layout = layoutOf(elements);
     if (layout.slices < 1) {
         refuse(picture, "a mosaic (ImageType MOSAIC) that does not say of how many slices",
@@ -124,7 +124,7 @@ std::vector<DicomSlice> slicesOfMosaic(const DicomElements& elements, const Dico
         const glm::dvec3 way(layout.normal[0], layout.normal[1], layout.normal[2]);
         if (glm::dot(way, step) < 0) step = -step;
     } else {
-        notes.push_back(
+        notes.add(
             "a mosaic that does not say which way its slices follow; the normal of rows and "
             "columns is taken");
     }

@@ -16,6 +16,6 @@ bool isMosaic(const DicomElements& elements);
 /// @param notes    what users may not expect of it
 /// @throw Error(kInput) if it does not say how many there are, or they do not fill it
 std::vector<DicomSlice> slicesOfMosaic(const DicomElements& elements, const DicomSlice& picture,
-                                       std::vector<std::string>& notes);
+                                       DicomNotes& notes);
 
 }  // namespace deltasplat

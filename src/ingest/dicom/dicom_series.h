@@ -20,7 +20,7 @@ struct DicomSeries {
     std::filesystem::path firstFile;
     bool images = false;             ///< whether any of them holds an image: reports hold none
     std::vector<DicomSlice> slices;  ///< in no order
-    std::vector<std::string> notes;  ///< what users may not expect of its values
+    DicomNotes notes;                ///< what users may not expect of its values
     std::optional<Error> error;      ///< what is wrong with the first file that is no slice
 };
 

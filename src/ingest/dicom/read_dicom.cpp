@@ -51,6 +51,10 @@ constexpr std::uint32_t kFrameOffsets = 0x3004000c;
 constexpr std::uint32_t kShared = 0x52009229;
 constexpr std::uint32_t kPerFrame = 0x52009230;
 
+// Of the memory that a frame takes while files are opened: a slice, twice while more are added, and
+// where its pixels lie.
+constexpr double kFrameBytes = 2.0 * sizeof(DicomSlice) + 256;
+
 constexpr bool kBigEndian = std::endian::native == std::endian::big;
 
 std::vector<double> placeOf(const std::filesystem::path& path, const DicomItem& item,
@@ -215,7 +219,6 @@ std::uint64_t plainCount(const DicomElements& elements, const DicomSlice& slice,
 // Returns the pieces of each frame. More pictures than the header has would be lost without a word.
 std::vector<std::vector<Piece>> picturesOf(const DicomElements& elements, const DicomSlice& slice,
                                            std::size_t frames) {
-    requirePixels(elements, slice, double(frames));
     std::vector<std::vector<Piece>> pictures;
     if (elements.packed) pictures = packedPictures(elements, slice, frames);
     const std::uint64_t count =
@@ -249,7 +252,7 @@ glm::dvec3 wayToFrame(const DicomSlice& first, const std::vector<double>& offset
 // Checks what a header says of its frames, of which there is one in most files. Their pixels are
 // not read.
 std::vector<DicomSlice> slicesOf(const std::filesystem::path& path, const DicomElements& elements,
-                                 std::vector<std::string>& notes) {
+                                 DicomNotes& notes) {
     DicomSlice first;
     first.file = path;
     setSize(elements, first);
@@ -260,7 +263,7 @@ std::vector<DicomSlice> slicesOf(const std::filesystem::path& path, const DicomE
     first.pixels.words = elements.pixelWords;
     if (!elements.packed && !elements.pixels.empty()) first.pixels.element = elements.pixels[0];
     if (elements.text(kPhotometric) == "MONOCHROME1")
-        notes.push_back("MONOCHROME1, low values meant to be bright: values stay as they are");
+        notes.add("MONOCHROME1, low values meant to be bright: values stay as they are");
 
     const std::size_t frames = frameCount(elements, first);
     const auto own = elements.sequences.find(kPerFrame);
@@ -270,15 +273,19 @@ std::vector<DicomSlice> slicesOf(const std::filesystem::path& path, const DicomE
         refuseFile(path, std::to_string(frames) + " frames in one file",
                    "one slice in each file, or frames that say where each lies");
     }
+    requirePixels(elements, first, double(frames));
+    requireMemory(path.string(), double(frames) * kFrameBytes);
     std::vector<std::vector<Piece>> pictures = picturesOf(elements, first, frames);
     std::vector<DicomSlice> slices;
+    slices.reserve(frames);
+    DicomLastTable table;
     for (std::size_t i = 0; i < frames; ++i) {
         const DicomFrame frame{&elements, elements.first(kShared),
                                hasOwn ? &own->second[i] : nullptr};
         DicomSlice slice = first;
         slice.frame = frames > 1 ? int(i) + 1 : 0;
         slice.pixels.pieces = std::move(pictures[i]);
-        slice.meaning = meaningOf(path.string(), frame, slice.pixels.bits, notes);
+        slice.meaning = meaningOf(path.string(), frame, slice.pixels.bits, table, notes);
         setPlace(frame, slice);
         if (!hasOwn && !offsets.empty()) slice.position += wayToFrame(slice, offsets, i);
         slices.push_back(std::move(slice));
@@ -381,13 +388,6 @@ void addSlices(std::vector<DicomSlice> slices, DicomSeries& series) {
         }
         series.slices.push_back(std::move(slice));
     }
-    // Each is said once of a series.
-    std::vector<std::string> notes;
-    for (std::string& note : series.notes) {
-        if (std::find(notes.begin(), notes.end(), note) == notes.end())
-            notes.push_back(std::move(note));
-    }
-    series.notes = std::move(notes);
 }
 
 void addFile(const std::filesystem::path& path, std::map<std::string, DicomSeries>& all) {
@@ -434,7 +434,7 @@ DenseSource medical_module::openDicom(const std::filesystem::path& input, const 
     auto files = std::make_shared<DicomFiles>();
     const DicomValues values = valuesOf(series.slices);
     files->target = values.target;
-    files->volume = arrangeSlices(input.string(), std::move(series.slices));
+    files->volume = arrangeSlices(input, std::move(series.slices));
 
     DenseSource source;
     source.where = input.string();
@@ -444,7 +444,7 @@ DenseSource medical_module::openDicom(const std::filesystem::path& input, const 
     source.type = values.target.type;
     if (values.mayBeNothing)
         source.nothing = DenseSource::Nothing{values.target.nothing, values.type};
-    source.notes = std::move(series.notes);
+    source.notes = series.notes.lines();
     source.bigEndian = kBigEndian;
     source.worldFromIndex = files->volume.worldFromIndex;
     requirePlacement(source.where, "places of slices", source.worldFromIndex);
