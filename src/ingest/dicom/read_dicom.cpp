@@ -264,6 +264,8 @@ std::vector<DicomSlice> slicesOf(const std::filesystem::path& path, const DicomE
     if (!elements.packed && !elements.pixels.empty()) first.pixels.element = elements.pixels[0];
     if (elements.text(kPhotometric) == "MONOCHROME1")
         notes.add("MONOCHROME1, low values meant to be bright: values stay as they are");
+    if (first.pixels.bigEndian && first.pixels.words && first.pixels.bits.allocated == 32)
+        notes.add("big endian numbers of 32 bits have the lower word first, as DICOM says");
 
     const std::size_t frames = frameCount(elements, first);
     const auto own = elements.sequences.find(kPerFrame);
