@@ -9,7 +9,7 @@ set -euo pipefail
 
 tools=(g++ cmake ninja-build ccache git pkg-config)
 headers=(libglm-dev libcli11-dev nlohmann-json3-dev)
-# OpenImageIO's CMake files ask for its programs, used or not.
+# The CMake files of OpenImageIO and GDCM ask for their programs, used or not.
 libraries=(
     libopenvdb-dev libboost-dev libboost-iostreams-dev libblosc-dev libimath-dev libtbb-dev
     libopenexr-dev libopenimageio-dev openimageio-tools libhwy-dev zlib1g-dev libgtest-dev
@@ -17,9 +17,9 @@ libraries=(
 )
 packages=("${tools[@]}" "${headers[@]}")
 case ${1:-} in
-    --to-build) packages+=("${libraries[@]}" libgdcm-dev) ;;
+    --to-build) packages+=("${libraries[@]}" libgdcm-dev libgdcm-tools) ;;
     --aarch64) packages+=(g++-aarch64-linux-gnu qemu-user "${libraries[@]/%/:arm64}") ;;
-    '') packages+=("${libraries[@]}" libgdcm-dev clang-format clang-tidy
+    '') packages+=("${libraries[@]}" libgdcm-dev libgdcm-tools clang-format clang-tidy
         shellcheck python3 debootstrap debian-archive-keyring) ;;
     *)
         echo "install_dependencies.sh: got $1; expected nothing, --to-build or --aarch64" >&2
