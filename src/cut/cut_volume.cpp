@@ -10,7 +10,9 @@
 #include "cut/keep_voxels.h"
 #include "deltasplat/error.h"
 #include "ingest/codes/code_statistics.h"
+#include "ingest/placement.h"
 #include "ingest/readers.h"
+#include "length_unit.h"
 #include "number_text.h"
 #include "view/affine.h"
 
@@ -130,7 +132,15 @@ void clip(const Cut& cut, Volume& volume) {
                boxText(worldBox(volume.box, volume.worldFromIndex)));
 }
 
-void applyMask(const Volume& mask, const Listener& listener, Volume& volume) {
+// The same mask in the volume's unit of length, if both are known.
+Volume inUnitOf(const Volume& volume, Volume mask) {
+    const double own = millimetresIn(mask.lengthUnit), wanted = millimetresIn(volume.lengthUnit);
+    if (own > 0 && wanted > 0 && own != wanted) scaleLengths(mask.worldFromIndex, own / wanted);
+    return mask;
+}
+
+void applyMask(const Volume& given, const Listener& listener, Volume& volume) {
+    const Volume mask = inUnitOf(volume, given);
     const MaskVoxels voxels(mask, volume);
     if (voxels.resamples()) {
         listener.warn(

@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "ingest/placement.h"
+#include "length_unit.h"
 #include "little_endian.h"
 #include "number_text.h"
 
@@ -29,6 +31,13 @@ std::string sizesText(glm::ivec2 size) {
     return std::to_string(size.x) + " " + std::to_string(size.y) + " 1";
 }
 
+// A line for each axis of space, if the unit is known.
+std::string unitsLine(const std::string& unit) {
+    if (unit.empty()) return "";
+    const std::string quoted = " \"" + unit + "\"";
+    return "space units:" + quoted + quoted + quoted + "\n";
+}
+
 // The part's first pixel is voxel (0, 0, 0).
 glm::dmat4 placeOf(const ImageFileOptions& options, const PixelBox& part) {
     glm::dmat4 matrix = options.worldFromPixel.value_or(glm::dmat4(1));
@@ -48,12 +57,14 @@ std::string nrrdHeader(const ImageFileOptions& options, const PixelBox& part) {
            "sizes: " + sizesText(part.size()) + "\nspace directions: " + vector(0) + " " +
            vector(1) + " " + vector(2) +
            "\nkinds: domain domain domain\nendian: little\nencoding: raw\nspace origin: " +
-           vector(3) + "\n\n";
+           vector(3) + "\n" + unitsLine(options.lengthUnit) + "\n";
 }
 
-// World space is LPS there.
+// World space is LPS there, in millimetres.
 std::string metaImageHeader(const ImageFileOptions& options, const PixelBox& part) {
     glm::dmat4 matrix = placeOf(options, part);
+    const double millimetres = millimetresIn(options.lengthUnit);
+    if (millimetres > 0) scaleLengths(matrix, millimetres);
     if (options.space == "RAS") {
         // Adding 0 keeps -0 out of the file.
         for (int column = 0; column < 4; ++column)
@@ -73,6 +84,7 @@ std::string metaImageHeader(const ImageFileOptions& options, const PixelBox& par
            directions + "\nOffset =" + text(glm::dvec3(matrix[3])) +
            "\nCenterOfRotation = 0 0 0\nElementSpacing =" + text(spacing) +
            "\nDimSize = " + sizesText(part.size()) +
+           (millimetres > 0 ? "\nDistanceUnits = mm" : "") +
            "\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n";
 }
 

@@ -56,14 +56,13 @@ std::vector<std::uint64_t> countsWithoutBackground(const Volume& volume) {
     return counts;
 }
 
-// Whether 0 lies where most values do, of as many cells of the same width between the ends.
+// Whether most values lie around 0, of cells of the same width, one of which has 0 in its middle.
 bool mostAreNearZero(const Volume& volume, const glm::dvec2& ends) {
     constexpr int kCells = 8;
     const auto cellOf = [&](double value) {
-        const double cell = kCells * ((value - ends.x) / (ends.y - ends.x));
-        return std::clamp(int(cell), 0, kCells - 1);
+        return kCells + int(std::round(kCells * (value / (ends.y - ends.x))));
     };
-    std::vector<std::uint64_t> cells(kCells);
+    std::vector<std::uint64_t> cells(2 * kCells + 1);
     const std::vector<std::uint64_t> counts = uncutHistogram(volume);
     for (std::size_t code = 0; code < counts.size(); ++code) {
         const double value = counts[code] == 0 ? ends.y : volume.codeBook.valueOf(Code(code));

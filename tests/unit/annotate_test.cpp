@@ -16,6 +16,7 @@
 #include "annotate/text_lines.h"
 #include "drawing/nice_step.h"
 #include "drawing/stroke_font.h"
+#include "length_unit.h"
 
 namespace deltasplat {
 namespace {
@@ -139,9 +140,18 @@ TEST(ScaleBar, SaysItsUnitAndWhereItHolds) {
                                              {0.4, "m", "100 mm"},
                                              {1.0, "cm", "2 mm"},
                                              {4.0, "in", "1 in"},
+                                             {2.0, "in", "10 mm"},
+                                             {2.0, "ft", "100 mm"},
                                              {1e-9, "mm", "2e-10 mm"}}) {
         options.frameWidthWorld = frame;
-        EXPECT_EQ(scaleBarOf(cameraOf(options), unit).label, label) << frame << " " << unit;
+        const ScaleBar bar = scaleBarOf(cameraOf(options), unit);
+        EXPECT_EQ(bar.label, label) << frame << " " << unit;
+        // As long as the label says.
+        const std::string text = label;
+        const std::string shown = text.substr(text.find(' ') + 1);
+        EXPECT_NEAR(bar.lengthWorld * millimetresIn(unit) / millimetresIn(shown),
+                    std::atof(text.c_str()), 1e-9 * std::atof(text.c_str()))
+            << frame << " " << unit;
     }
     CameraOptions eye;
     eye.projection = Projection::kPerspective;

@@ -314,6 +314,24 @@ TEST(CutVolume, masksByIndex) {
     EXPECT_EQ(warnings.text, "");
 }
 
+// Each in its own unit of length.
+TEST(CutVolume, masksInOtherUnits) {
+    Volume volume = denseVolume();
+    volume.worldFromIndex = obliqueMatrix();
+    volume.lengthUnit = "mm";
+    auto mask = std::make_shared<Volume>(someMask(kBox));
+    mask->worldFromIndex = volume.worldFromIndex;
+    for (int column = 0; column < 4; ++column)
+        mask->worldFromIndex[column] *= glm::dvec4(0.1, 0.1, 0.1, 1);
+    mask->lengthUnit = "cm";
+    Cut cut;
+    cut.mask = mask;
+    Warnings warnings;
+    const Volume left = cutVolume(volume, cut, warnings.listener());
+    expectCut(volume, left, [&](const glm::ivec3& at) { return isKept(*mask, at); });
+    EXPECT_EQ(warnings.text, "");
+}
+
 TEST(CutVolume, masksByPlace) {
     Volume volume = denseVolume();
     volume.worldFromIndex = obliqueMatrix();

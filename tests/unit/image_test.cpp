@@ -466,6 +466,12 @@ TEST(WriteImage, PicturesOfNumbersHoldThem) {
     // A part of the picture lies where it lay.
     options.region = PixelBox{{1, 1}, {3, 2}};
     EXPECT_NE(encoded("a.nrrd", options).find("space origin: (10,22,27)\n"), std::string::npos);
+    // Lengths of a known unit: said in one, millimetres in the other.
+    options.lengthUnit = "cm";
+    EXPECT_NE(encoded("a.nrrd", options).find("\nspace units: \"cm\" \"cm\" \"cm\"\n\n"),
+              std::string::npos);
+    EXPECT_NE(encoded("a.mha", options).find("\nElementSpacing = 20 30 20\n"), std::string::npos);
+    EXPECT_NE(encoded("a.mha", options).find("\nDistanceUnits = mm\n"), std::string::npos);
 
     const test::TempFolder folder;
     options.region.reset();

@@ -385,6 +385,17 @@ TEST(DefaultRamp, divergesFromZeroWhereMostValuesAre) {
     }
 }
 
+// Noise around 0 has a little more on one side or on the other.
+TEST(DefaultRamp, divergesWhicheverSideOfZeroHasMore) {
+    for (const int more : {-1, 1}) {
+        std::vector<std::uint64_t> counts;
+        for (int value = -40; value <= 40; ++value)
+            counts.push_back(std::uint64_t(1000 * std::exp(-value * value / 200.0)) +
+                             (value * more > 0 ? 20 : 0));
+        EXPECT_EQ(defaultRamp(signedVolume(-40, counts)).name, "diverging ramp");
+    }
+}
+
 TEST(DefaultRamp, goesOneWayWhereZeroIsAValueAsOthers) {
     // Most are air, at the lower end; most are 2; nothing but a little overshoot is below 0.
     for (const auto& counts : {std::vector<std::uint64_t>{900, 10, 20, 25, 30, 20, 10, 5},

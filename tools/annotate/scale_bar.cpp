@@ -12,20 +12,24 @@ namespace deltasplat {
 
 namespace {
 
-// Of a unit that is known, or of the next smaller ones of which it is one or more.
-std::string lengthText(double length, const std::string& unit) {
-    if (unit.empty()) return numberText(length) + " units";
-    const double millimetres = length * millimetresIn(unit);
-    if (length >= 1) return numberText(length) + " " + unit;
+struct Length {
+    double world;
+    std::string text;
+};
+
+// A round length: of the world's unit, or of the next smaller one of which it is one or more.
+Length roundLength(double most, const std::string& unit) {
+    const double own = niceStep(most, 1);
+    if (unit.empty()) return {own, numberText(own) + " units"};
+    if (own >= 1) return {own, numberText(own) + " " + unit};
     for (const char* const smaller : {"m", "mm", "um", "nm", "pm"}) {
-        const double count = millimetres / millimetresIn(smaller);
-        // A round number that the way by millimetres has moved off by a rounding.
+        const double scale = millimetresIn(unit) / millimetresIn(smaller);
+        // A length that is round in both is not lost to a rounding.
         constexpr double kRounding = 1e-9;
-        if (count < 1 - kRounding) continue;
-        const double digits = std::pow(10, std::floor(std::log10(count) + kRounding));
-        return numberText(std::round(count / digits) * digits) + " " + smaller;
+        const double count = niceStep(most * scale * (1 + kRounding), 1);
+        if (count >= 1) return {count / scale, numberText(count) + " " + smaller};
     }
-    return numberText(length) + " " + unit;
+    return {own, numberText(own) + " " + unit};
 }
 
 }  // namespace
@@ -33,9 +37,10 @@ std::string lengthText(double length, const std::string& unit) {
 ScaleBar scaleBarOf(const Camera& camera, const std::string& lengthUnit) {
     constexpr double kMostShare = 0.3;
     ScaleBar bar;
-    bar.lengthWorld = niceStep(kMostShare * camera.frameWidthWorld, 1);
+    const Length length = roundLength(kMostShare * camera.frameWidthWorld, lengthUnit);
+    bar.lengthWorld = length.world;
     bar.lengthPixels = bar.lengthWorld / camera.pixelWorld();
-    bar.label = lengthText(bar.lengthWorld, lengthUnit);
+    bar.label = length.text;
     if (camera.projection == Projection::kPerspective) bar.label += " at target";
     return bar;
 }

@@ -75,6 +75,7 @@ void usePoses(const CLI::App& app, PictureOptions& options) {
     for (const char* other : kPlaces)
         if (std::string(other) != "--target") requireOnce(app, "--poses", other);
     for (const char* other : kLenses) requireOnce(app, "--poses", other);
+    requireOnce(app, "--poses", "--up");
     requireOnce(app, "--poses", "--camera");
     options.camera.poses = readPoses(options.camera.posesFile);
     applyPose(options.camera.poses.front(), options.render.camera);

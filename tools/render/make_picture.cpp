@@ -183,6 +183,7 @@ void showScene(const RenderCommand& command, const ReadScene& scene, const Seque
     boundOver(picture.background, result.stats);
     ImageFileOptions image = imageOptions(command, codesOf(volume), result, session);
     image.space = volume.space;
+    image.lengthUnit = volume.lengthUnit;
     const Listener writing = partOf(listener, kRenderShare, 1);
     warnOfDepths(command.channels, options.optics, writing);
     AovOptions aovOptions = command.aovOptions;

@@ -256,10 +256,15 @@ void warnOfHidden(const std::filesystem::path& input, const Volume& volume,
     constexpr double kMuch = 0.5;
     const double share = hiddenShare(volume, ramp, {});
     if (share <= kMuch) return;
+    const auto clear =
+        std::ranges::find(ramp.opacities, 0.0, &TransferFunction::OpacityPoint::opacity);
+    if (clear == ramp.opacities.end()) return;
+    const char* const side = clear == ramp.opacities.begin()     ? " or less"
+                             : clear + 1 == ramp.opacities.end() ? " or more"
+                                                                 : "";
     listener.warn(input.string() + ": " + std::to_string(int(100 * share)) +
-                  " % of the voxels are not shown, for the ramp begins at " +
-                  numberText(ramp.opacities.front().x) +
-                  ", which is the value of most; --range LO,HI has it begin elsewhere");
+                  " % of the voxels are not shown: their values are " + numberText(clear->x) +
+                  side + ", where the ramp is clear; --range LO,HI has it begin elsewhere");
 }
 
 // Puts into `options` what depends on the volume: all of it, whatever is cut off.
@@ -366,7 +371,7 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
     Volume volume = placed(look     ? look->sequence.read(input, read, listener)
                            : reader ? reader(input, read, listener)
                                     : readVolume(input, read, listener),
-                           picture);
+                           picture, {{}, listener.warning});
     if (measuresMillimetres(picture.render) && volume.lengthUnit.empty()) {
         listener.warn(input.string() + ": names no unit of length; " +
                       (picture.render.mode == Mode::kDrr ? "--mode drr" : "--sid") +

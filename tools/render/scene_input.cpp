@@ -55,10 +55,12 @@ bool measuresMillimetres(const RenderOptions& render) {
     return render.mode == Mode::kDrr || render.camera.sourceToDetectorWorld.has_value();
 }
 
-Volume placed(Volume volume, const PictureOptions& picture) {
+Volume placed(Volume volume, const PictureOptions& picture, const Listener& listener) {
     const RenderOptions& render = picture.render;
     const double millimetres = millimetresIn(volume.lengthUnit);
     if (measuresMillimetres(render) && millimetres > 0 && millimetres != 1) {
+        listener.warn(volume.name + ": lengths are in " + volume.lengthUnit +
+                      ", and are turned into millimetres, as are those of all options");
         scaleLengths(volume.worldFromIndex, millimetres);
         volume.lengthUnit = "mm";
     }

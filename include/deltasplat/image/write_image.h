@@ -31,8 +31,9 @@ struct ImageFileOptions {
     float nothing = 0;  ///< of `numbers`: what is stored where alpha is 0; 0: the number
     /// .nrrd, .mha: maps the centre of a pixel, (column, row, 0), to its place in the world.
     std::optional<glm::dmat4> worldFromPixel;
-    std::string space;  ///< of that world, as Volume::space
-    int bits = 8;       ///< .png, .tif: 8 or 16 a channel; .jpg: 8; without effect on .exr
+    std::string space;       ///< of that world, as Volume::space
+    std::string lengthUnit;  ///< of that world, as Volume::lengthUnit; .mha holds mm
+    int bits = 8;            ///< .png, .tif: 8 or 16 a channel; .jpg: 8; without effect on .exr
     /// 8 bits: rounds up and down in a fixed pattern, so that slow ramps show no steps.
     bool dither = true;
     std::optional<glm::dmat4>
