@@ -69,7 +69,9 @@ HWY_INLINE void storeValues(const Code* codes, const CodeValues& values, const V
     const hn::Rebind<std::int32_t, EightTag> wide;
     const hn::Rebind<Code, EightTag> narrow;
     const auto offset = hn::Set(tag, values.offset);
-    for (std::size_t slice = 0; slice < 8; ++slice) {
+    codes += 64 * place.firstSlice;
+    for (auto slice = std::size_t(place.firstSlice); slice <= std::size_t(place.lastSlice);
+         ++slice) {
         for (std::size_t u = 0; u < 8; ++u, codes += 8) {
             float* out = place.first + slice * place.sliceStep + u * place.rowStep;
             for (std::size_t v = 0; v < 8; v += hn::Lanes(tag)) {

@@ -19,6 +19,8 @@ struct ValuePlace {
     float* first;
     std::size_t sliceStep;
     std::size_t rowStep;
+    int firstSlice = 0;  ///< of those that are wanted; others are left out
+    int lastSlice = 7;
 };
 
 /// Reads the 512 codes of a leaf (x slowest, z fastest) as values, in (slice, u, v) order.

@@ -17,12 +17,24 @@ struct Overlap {
     int first;
     int last;
 
+    std::size_t count() const { return std::size_t(last - first + 1); }
     Overlap(const RayAxes& axes, const PatchBox& box, int i, int block) {
         const int a = axes.sign[i] * (8 * block - axes.first[i]);
         const int b = axes.sign[i] * (8 * block + 7 - axes.first[i]);
         first = std::max(std::min(a, b), box.first[i]);
         last = std::min(std::max(a, b), box.first[i] + box.size[i] - 1);
     }
+};
+
+// What a block and a box have in common.
+struct Shared {
+    Overlap s, u, v;
+
+    Shared(const RayAxes& axes, const PatchBox& box, const CodeBlock& block)
+        : s(axes, box, 0, block.position[axes.order[0]]),
+          u(axes, box, 1, block.position[axes.order[1]]),
+          v(axes, box, 2, block.position[axes.order[2]]) {}
+    std::size_t voxels() const { return s.count() * u.count() * v.count(); }
 };
 
 // Copies values forwards or backwards: mostly eight, in vectors.
@@ -78,22 +90,28 @@ bool PatchReader::find(const RayAxes& axes, const PatchBox& box) {
 }
 
 const RayPatch& PatchReader::read(const RayAxes& axes, const PatchBox& box) {
-    const bool asksActive = rule_ != RayRule::kSum;
     const std::size_t slice = std::size_t(box.size.y) * std::size_t(box.size.z);
-    const std::size_t count = slice * std::size_t(box.size.x) + kSpare;
-    values_.assign(count, volume_.empty);
-    if (asksActive) active_.assign(count, 0.0f);
-    std::size_t wholes = 0;
-    for (const CodeBlock* block : found_) wholes += addBlock(axes, box, *block);
-    const bool isWhole = wholes == slice * std::size_t(box.size.x);
+    const std::size_t count = slice * std::size_t(box.size.x);
+    std::size_t active = 0;
+    for (const CodeBlock* block : found_)
+        if (!block->leaf || block->leaf->isDense()) active += Shared(axes, box, *block).voxels();
+    const bool isWhole = active == count;
+    const bool asksActive = rule_ != RayRule::kSum && !isWhole;
+    if (isWhole) {
+        values_.resize(count + kSpare);
+    } else {
+        values_.assign(count + kSpare, volume_.empty);
+    }
+    if (asksActive) active_.assign(count + kSpare, 0.0f);
+    for (const CodeBlock* block : found_) addBlock(axes, box, *block, asksActive);
     patch_ = RayPatch();
     patch_.values = values_.data();
-    patch_.active = asksActive && !isWhole ? active_.data() : nullptr;
+    patch_.active = asksActive ? active_.data() : nullptr;
     patch_.sliceStep = std::ptrdiff_t(slice);
     patch_.slices = box.size.x;
     patch_.sizeU = box.size.y;
     patch_.sizeV = box.size.z;
-    patch_.leavesOut = rule_ == RayRule::kMaxActive && !isWhole;
+    patch_.leavesOut = rule_ == RayRule::kMaxActive && asksActive;
     if (isExtreme(rule_)) findTops(box);
     return patch_;
 }
@@ -134,20 +152,15 @@ void PatchReader::findTops(const PatchBox& box) {
     patch_.tops = tops_.data();
 }
 
-// Returns how many voxels it has written of a block that is active as a whole.
-std::size_t PatchReader::addBlock(const RayAxes& axes, const PatchBox& box,
-                                  const CodeBlock& block) {
-    const bool asksActive = rule_ != RayRule::kSum;
-    const bool isWhole = readBlock(volume_, block, axes.order[0], block_.data(),
-                                   asksActive ? blockActive_.data() : nullptr);
-    const glm::ivec3 position(block.position[axes.order[0]], block.position[axes.order[1]],
-                              block.position[axes.order[2]]);
-    const Overlap s(axes, box, 0, position.x);
-    const Overlap u(axes, box, 1, position.y);
-    const Overlap v(axes, box, 2, position.z);
+void PatchReader::addBlock(const RayAxes& axes, const PatchBox& box, const CodeBlock& block,
+                           bool asksActive) {
+    const auto [s, u, v] = Shared(axes, box, block);
     const auto inBlock = [&](int i, int at) {
-        return std::ptrdiff_t(axes.voxelAt(i, at) - 8 * position[i]);
+        return std::ptrdiff_t(axes.voxelAt(i, at) - 8 * block.position[axes.order[i]]);
     };
+    const auto [first, last] = std::minmax({inBlock(0, s.first), inBlock(0, s.last)});
+    readBlock(volume_, block, axes.order[0], {first, last}, block_.data(),
+              asksActive ? blockActive_.data() : nullptr);
     const std::ptrdiff_t columns = v.last - v.first + 1;
     const bool isForward = axes.sign[2] > 0;
     const std::ptrdiff_t firstColumn = inBlock(2, isForward ? v.first : v.last);
@@ -162,9 +175,6 @@ std::size_t PatchReader::addBlock(const RayAxes& axes, const PatchBox& box,
                 copyRow(blockActive_.data() + from, columns, isForward, active_.data() + out);
         }
     }
-    return isWhole ? std::size_t(s.last - s.first + 1) * std::size_t(u.last - u.first + 1) *
-                         std::size_t(columns)
-                   : 0;
 }
 
 }  // namespace deltasplat

@@ -29,7 +29,8 @@ class PatchReader {
     const RayPatch& patch() const { return patch_; }
 
   private:
-    std::size_t addBlock(const RayAxes& axes, const PatchBox& box, const CodeBlock& block);
+    void addBlock(const RayAxes& axes, const PatchBox& box, const CodeBlock& block,
+                  bool asksActive);
     void findTops(const PatchBox& box);
 
     const RayVolume& volume_;

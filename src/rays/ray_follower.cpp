@@ -144,6 +144,7 @@ void RayFollower::gather(std::span<const SightRay> rays) {
     for (std::vector<float>* values : {&u_, &v_, &firstSlice_}) values->resize(alike_.rays.size());
     wholeU_.resize(alike_.rays.size());
     wholeV_.resize(alike_.rays.size());
+    bests_.assign(bundles, {});
     groups_.assign((bundles + kGroupBundles - 1) / kGroupBundles, {});
     for (std::size_t i = 0; i < alike_.rays.size(); ++i)
         groups_[i / kGroupLines].addSlices(rays[alike_.rays[i]].slices);
@@ -184,64 +185,51 @@ void RayFollower::listLayers() {
     }
 }
 
-// Whether a group may find something in a layer that it has not been followed through: of largest
+// Whether a bundle may find something in a layer whose blocks hold no more than `top`: of largest
 // values more than before, or as much at a nearer place.
-bool RayFollower::mayFind(std::size_t group, std::size_t layer) const {
-    const float top = tops_[group * layers_.size() + layer];
-    if (top == kNothing || !isExtreme(rule_)) return top != kNothing;
-    const Group& one = groups_[group];
-    if (one.best == layer) return false;
-    return !one.areMet || top > one.least ||
-           (top == one.least && float(layers_[layer].slices.x - 1) < one.farthest);
+bool RayFollower::mayFind(std::size_t bundle, float top, const BlockLayer& layer) const {
+    const Best& best = bests_[bundle];
+    return !best.areMet || top > best.least ||
+           (top == best.least && float(layer.slices.x - 1) < best.farthest);
 }
 
 void RayFollower::followAlike(std::span<const SightRay> rays, std::span<RayFound> found) {
     gather(rays);
     listLayers();
-    if (isExtreme(rule_)) {
-        // What is found where the largest values are spares most of the others.
-        for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
-            chosen_.clear();
-            for (std::size_t group = 0; group < groups_.size(); ++group)
-                if (groups_[group].best == layer) chosen_.push_back(group);
-            addLayer(rays, layers_[layer]);
-        }
-    }
-    for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
-        chosen_.clear();
-        for (std::size_t group = 0; group < groups_.size(); ++group)
-            if (mayFind(group, layer)) chosen_.push_back(group);
-        addLayer(rays, layers_[layer]);
-    }
+    // What is found where the largest values are spares most of the others.
+    if (isExtreme(rule_))
+        for (std::size_t layer = 0; layer < layers_.size(); ++layer) addLayer(rays, layer, true);
+    for (std::size_t layer = 0; layer < layers_.size(); ++layer) addLayer(rays, layer, false);
     for (std::size_t i = 0; i < alike_.rays.size(); ++i) found[alike_.rays[i]] = foundAt(i);
 }
 
-// Follows the chosen groups through a layer.
-void RayFollower::addLayer(std::span<const SightRay> rays, const BlockLayer& layer) {
-    if (chosen_.empty()) return;
-    bundles_.clear();
-    for (const std::size_t group : chosen_) {
-        const std::size_t last =
-            std::min((group + 1) * kGroupBundles, alike_.rays.size() / kRayBundle);
-        for (std::size_t bundle = group * kGroupBundles; bundle < last; ++bundle)
-            bundles_.push_back(bundle);
+// Follows bundles through a layer.
+// @param isFirst  of largest values: those of groups that may find most there, or what is left
+void RayFollower::addLayer(std::span<const SightRay> rays, std::size_t number, bool isFirst) {
+    const BlockLayer& layer = layers_[number];
+    chosen_.clear();
+    for (std::size_t group = 0; group < groups_.size(); ++group) {
+        const float top = tops_[group * layers_.size() + number];
+        if (top == kNothing) continue;
+        if (isExtreme(rule_) && isFirst != (groups_[group].best == number)) continue;
+        const std::size_t first = group * kGroupBundles;
+        const std::size_t last = std::min(first + kGroupBundles, bests_.size());
+        for (std::size_t bundle = first; bundle < last; ++bundle)
+            if (!isExtreme(rule_) || mayFind(bundle, top, layer)) chosen_.push_back(bundle);
     }
+    if (chosen_.empty()) return;
     // Largest values are looked for between slices, too, also before and behind what is there.
     const int around = isExtreme(rule_) ? 1 : 0;
-    addSlices(rays, bundles_, layer.slices + glm::ivec2(-around, around));
+    addSlices(rays, chosen_, layer.slices + glm::ivec2(-around, around));
     if (!isExtreme(rule_)) return;
-    for (const std::size_t group : chosen_) update(groups_[group], group);
-}
-
-void RayFollower::update(Group& group, std::size_t number) const {
-    group.least = std::numeric_limits<float>::infinity();
-    group.farthest = kNothing;
-    group.areMet = true;
-    const std::size_t last = std::min((number + 1) * kGroupLines, alike_.rays.size());
-    for (std::size_t i = number * kGroupLines; i < last; ++i) {
-        group.least = std::min(group.least, sums_.found[i]);
-        group.farthest = std::max(group.farthest, sums_.rest[i]);
-        group.areMet = group.areMet && sums_.met[i] > 0;
+    for (const std::size_t bundle : chosen_) {
+        Best best{std::numeric_limits<float>::infinity(), kNothing, true};
+        for (std::size_t i = kRayBundle * bundle; i < kRayBundle * (bundle + 1); ++i) {
+            best.least = std::min(best.least, sums_.found[i]);
+            best.farthest = std::max(best.farthest, sums_.rest[i]);
+            best.areMet = best.areMet && sums_.met[i] > 0;
+        }
+        bests_[bundle] = best;
     }
 }
 

@@ -45,21 +45,23 @@ class RayFollower {
         std::vector<double> begins;  // the first slice that is seen as a whole, or where they begin
         std::vector<float> slopesU, slopesV;
     };
-    /// Bundles beside each other, and of largest values what all of their lines have found.
+    /// Bundles beside each other.
     struct Group : LineGroup {
+        std::size_t best = 0;  ///< the layer that holds the largest values, where there is any
+    };
+    /// Of largest values: the least that a line of a bundle has found, the farthest place.
+    struct Best {
         float least = 0;
-        float farthest = 0;  // where
+        float farthest = 0;
         bool areMet = false;
-        std::size_t best = 0;  // layer that holds the largest values
     };
     using Bundles = std::span<const std::size_t>;
 
     void gather(std::span<const SightRay> rays);
     void followAlike(std::span<const SightRay> rays, std::span<RayFound> found);
     void listLayers();
-    bool mayFind(std::size_t group, std::size_t layer) const;
-    void addLayer(std::span<const SightRay> rays, const BlockLayer& layer);
-    void update(Group& group, std::size_t number) const;
+    bool mayFind(std::size_t bundle, float top, const BlockLayer& layer) const;
+    void addLayer(std::span<const SightRay> rays, std::size_t number, bool isFirst);
     void addSlices(std::span<const SightRay> rays, Bundles bundles, const glm::ivec2& slices);
     void addOneByOne(std::span<const SightRay> rays, std::size_t bundle, const glm::ivec2& slices);
     PatchBox boxOf(Bundles bundles, const glm::ivec2& slices) const;
@@ -74,11 +76,11 @@ class RayFollower {
     RayAxes axes_;
     Alike alike_;
     std::vector<Group> groups_;
-    std::vector<BlockLayer> layers_;    // in the order in which lines meet them
-    std::vector<float> tops_;           // of each group of each layer
-    std::vector<std::size_t> chosen_;   // groups that are followed through a layer
-    std::vector<std::size_t> bundles_;  // theirs
-    Sums sums_, shares_;                // of `alike_`; of means also the shares of active voxels
+    std::vector<BlockLayer> layers_;   // in the order in which lines meet them
+    std::vector<float> tops_;          // of each group of each layer
+    std::vector<Best> bests_;          // of bundles
+    std::vector<std::size_t> chosen_;  // bundles that are followed through a layer
+    Sums sums_, shares_;               // of `alike_`; of means also the shares of active voxels
     std::vector<std::int32_t> wholeU_, wholeV_;
     std::vector<float> u_, v_, firstSlice_;
 };

@@ -60,6 +60,7 @@ std::vector<Slot> readValues(const Volume& volume, RayRule rule, const ValueMap&
 template <typename Leaf>
 void placeValues(const Leaf& leaf, int sliceAxis, const ValueMap& map, const ValuePlace& place) {
     forLeafVoxels(sliceAxis, [&](const glm::ivec3& at, int n) {
+        if (at.x < place.firstSlice || at.x > place.lastSlice) return;
         place.first[std::size_t(at.x) * place.sliceStep + std::size_t(at.y) * place.rowStep +
                     std::size_t(at.z)] = floatOf(map(double(leaf.getValue(openvdb::Index(n)))));
     });
@@ -161,7 +162,7 @@ class CodeTops {
 
 float topOfSource(const RayVolume& rays, const CodeBlock& block) {
     std::array<float, 512> values, active;
-    readBlock(rays, block, 0, values.data(), active.data());
+    readBlock(rays, block, 0, {0, 7}, values.data(), active.data());
     float top = kNothing;
     for (std::size_t i = 0; i < values.size(); ++i)
         if (active[i] > 0) top = std::max(top, values[i]);
@@ -202,27 +203,28 @@ RayVolume makeRayVolume(const Volume& volume, RayRule rule, const ValueMap& map)
     return rays;
 }
 
-bool readBlock(const RayVolume& volume, const CodeBlock& block, int axis, float* values,
-               float* active) {
-    const ValuePlace place{values, 64, 8};
+void readBlock(const RayVolume& volume, const CodeBlock& block, int axis, glm::ivec2 slices,
+               float* values, float* active) {
+    const ValuePlace place{values, 64, 8, slices.x, slices.y};
+    const std::ptrdiff_t first = 64 * std::ptrdiff_t{slices.x};
+    const std::ptrdiff_t count = 64 * (std::ptrdiff_t{slices.y} - slices.x + 1);
     if (volume.sourceValues) {
         volume.sourceValues(block, axis, place);
     } else if (block.leaf) {
         readBlockValues(block.leaf->buffer().data(), axis, volume.values, place);
     } else {
-        std::fill_n(values, 512, volume.valueOf(Code(block.tileSlot - 1)));
+        std::fill_n(values + first, count, volume.valueOf(Code(block.tileSlot - 1)));
     }
-    if (active) std::fill_n(active, 512, 1.0f);
-    if (!block.leaf || block.leaf->isDense()) return true;
+    if (active) std::fill_n(active + first, count, 1.0f);
+    if (!block.leaf || block.leaf->isDense()) return;
     const ActiveWords words = activeWords(*block.leaf, axis);
-    for (std::size_t slice = 0; slice < 8; ++slice) {
+    for (auto slice = std::size_t(slices.x); slice <= std::size_t(slices.y); ++slice) {
         for (std::uint64_t off = ~words[slice]; off != 0; off &= off - 1) {
             const std::size_t at = 64 * slice + std::size_t(std::countr_zero(off));
             values[at] = volume.empty;
             if (active) active[at] = 0;
         }
     }
-    return false;
 }
 
 }  // namespace deltasplat

@@ -74,10 +74,9 @@ struct RayVolume {
 /// Lists what rays meet of a volume that is not empty. The volume must outlive what is returned.
 RayVolume makeRayVolume(const Volume& volume, RayRule rule, const ValueMap& map = {});
 
-/// Reads the 512 values of a block in the order of an axis, `[slice][u][v]`.
+/// Reads the values of some of a block's slices in the order of an axis, `[slice][u][v]`.
 /// @param active  likewise 1 where a voxel is active, else 0; may be null
-/// @return whether all are active
-bool readBlock(const RayVolume& volume, const CodeBlock& block, int axis, float* values,
-               float* active);
+void readBlock(const RayVolume& volume, const CodeBlock& block, int axis, glm::ivec2 slices,
+               float* values, float* active);
 
 }  // namespace deltasplat
