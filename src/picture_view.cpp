@@ -11,6 +11,7 @@
 #include "deltasplat/error.h"
 #include "dims_text.h"
 #include "splat/pixel_splatter.h"
+#include "view/most_parallel.h"
 #include "view/thin_voxels.h"
 
 namespace deltasplat {
@@ -75,6 +76,37 @@ double planeDensity(const Factorization& view, const IndexBox& box, double sheet
     // Reading sheets that are not averaged takes so much less time.
     constexpr double kWorthMore = 1.3;
     return most < kWorthMore * needed ? most : needed;
+}
+
+// The covariance of where a voxel is seen in a footprint, in voxels: uu, vv and uv.
+glm::dvec3 covarianceOf(const Footprint& footprint) {
+    // A tent from one pixel's middle to the next.
+    if (footprint.weights.empty()) {
+        const double variance = 1 / (6 * footprint.pixelsPerVoxel() * footprint.pixelsPerVoxel());
+        return {variance, variance, 0};
+    }
+    glm::dvec3 products(0);
+    for (int y = 0; y < footprint.width; ++y) {
+        for (int x = 0; x < footprint.width; ++x) {
+            const glm::dvec2 away = glm::dvec2(y, x) - 0.5 * (footprint.width - 1);
+            products += double(footprint.at(x, y)) * glm::dvec3(away * away, away.x * away.y);
+        }
+    }
+    // Weights of each of the phases add up to one.
+    const double phases = footprint.resolution * footprint.resolution;
+    return products / (footprint.one() * phases * phases);
+}
+
+// What reading sheets between their pixels adds to that: on average, as lines of sight lie anywhere
+// between, but where all of them meet pixels.
+glm::dvec3 covarianceOfReading(const Factorization& view, double sheetPixels) {
+    glm::dvec3 covariance(0);
+    for (int i = 0; i < 2; ++i) {
+        const double pixels = view.shiftPerSlice[i] * sheetPixels;
+        const bool isBetween = view.eye || std::abs(pixels - std::round(pixels)) >= kSnap;
+        if (isBetween) covariance[i] = 1 / (6 * sheetPixels * sheetPixels);
+    }
+    return covariance;
 }
 
 }  // namespace
@@ -170,6 +202,7 @@ PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
         const LitScene lit{
             camera,
             scene.scene.volume->worldFromIndex * indexFromThinVoxel(axis_->sliceAxis, axis_->parts),
+            covarianceOf(footprint_) + covarianceOfReading(thinView_, footprint_.pixelsPerVoxel()),
             axis_->sliceAxis};
         std::unique_ptr<const LookLight> light;
         if (painter) light = painter->lightOf(classes, isLit ? &lit : nullptr);

@@ -369,16 +369,24 @@ void ColumnPacker::addMixed(const CodeBlock& block) {
 void ColumnPacker::paintMixed(const CodeBlock& block) {
     painted_.resize(mixed_.size());
     for (PaintedBlock& painted : painted_) painted.classes.fill(0);
+    const auto& slots = window_->window.slots;
+    const bool hasSurface = options_.painter->heightOfSurface() < OwnLook::kAll;
+    const bool hasEnds =
+        hasSurface && std::find(slots.begin(), slots.end(), kEmptySlot) != slots.end();
     forMixed(block, [&](const glm::ivec3& position, int number, const glm::ivec2&, int) {
         own_->paint(position, number, classes_);
         if (uncut_) clearCutOff(position);
+        if (hasEnds) closeEnds(position);
         painted_[std::size_t(number)] = {classes_, own_->block()};
     });
     if (parts_.divides()) keepSeen();
 }
 
-// Lets voxels that are seen for themselves be what they are, if nothing that they become is seen.
+// Lets voxels that are seen for themselves be what they are, if nothing that they become is inside,
+// or so near to it that most of it is seen.
 void ColumnPacker::keepSeen() {
+    constexpr int kNearSurface = OwnLook::kAll / 16;
+    const int surface = options_.painter->heightOfSurface();
     for (int n = 0; n < 512; ++n) {
         const glm::ivec3 place(n / 64, n / 8 % 8, n % 8);
         const Slot own = window_->window.at(place);
@@ -386,7 +394,9 @@ void ColumnPacker::keepSeen() {
         bool isSeen = false;
         const ValueMixer& mixer = *tools_.mixer;
         mixer.forPartsOf(place, [&](std::size_t part, std::size_t voxel) {
-            isSeen = isSeen || painted_[part].classes[voxel] != 0;
+            const PaintedBlock& painted = painted_[part];
+            const int height = painted.looks[voxel].height - kNearSurface;
+            isSeen = isSeen || (painted.classes[voxel] != 0 && height <= surface);
         });
         if (isSeen) continue;
         mixer.forPartsOf(place, [&](std::size_t part, std::size_t voxel) {
@@ -407,6 +417,33 @@ void ColumnPacker::clearCutOff(const glm::ivec3& position) {
         if (window_->window.at(place) != kEmptySlot) continue;
         if (uncut_->window.at(place) != kEmptySlot || !window_->window.hasAnyAround(place))
             classes_[std::size_t(n)] = 0;
+    }
+}
+
+// Whether the volume ends, or is cut, beside a voxel: where what is not active has a value, values
+// go on.
+bool ColumnPacker::isAtEnd(const glm::ivec3& place) const {
+    const GradientScale* scale = options_.painter->gradientScale();
+    const bool endsThere = !scale || !scale->background;
+    for (int n = 0; n < 6; ++n) {
+        glm::ivec3 beside = place;
+        beside[n / 2] += n % 2 == 0 ? -1 : 1;
+        if (window_->window.at(beside) != kEmptySlot) continue;
+        if (endsThere || (uncut_ && uncut_->window.at(beside) != kEmptySlot)) return true;
+    }
+    return false;
+}
+
+// Lets all be seen of what is inside and at an end: lines of sight that come in there have not met
+// its surface.
+void ColumnPacker::closeEnds(const glm::ivec3& position) {
+    const glm::ivec3 per(parts_.slices, parts_.within, parts_.within);
+    const glm::ivec3 first = 8 * (position - firstPart(*inHand_));
+    const int surface = options_.painter->heightOfSurface();
+    for (int n = 0; n < 512; ++n) {
+        OwnLook& look = own_->block()[std::size_t(n)];
+        if (classes_[std::size_t(n)] == 0 || look.height > surface) continue;
+        if (isAtEnd((first + glm::ivec3(n / 64, n / 8 % 8, n % 8)) / per)) look = {};
     }
 }
 

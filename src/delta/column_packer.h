@@ -121,6 +121,8 @@ class ColumnPacker {
     void paintMixed(const CodeBlock& block);
     void keepSeen();
     void clearCutOff(const glm::ivec3& position);
+    bool isAtEnd(const glm::ivec3& place) const;
+    void closeEnds(const glm::ivec3& position);
     void add(const glm::ivec3& position, std::size_t number, std::size_t row, int slices);
     bool isNeeded(int slice, std::uint64_t visible, std::uint64_t changed) const;
 

@@ -10,15 +10,6 @@
 #include "portable_math.h"
 
 namespace deltasplat {
-namespace {
-
-// A voxel that a surface cuts in the middle is half there: what is seen down to a slice is what
-// lies before its middle. And a quarter of a voxel is what surfaces are moved inwards
-// (surface_painter.cpp).
-constexpr double kSurfaceMoved = 0.5 + 0.25;
-
-}  // namespace
-
 // Depths of a parallel picture begin at its camera, which may be anywhere.
 DepthBuilder::DepthBuilder(const Camera& camera, double opacity, Growth growth)
     : size_(camera.sizePixels),
@@ -36,8 +27,7 @@ void DepthBuilder::begin(std::shared_ptr<const SliceDepths> depths) {
 }
 
 void DepthBuilder::add(const Image& picture, double front, double back) {
-    const double moved = growth_ == Growth::kSurface ? kSurfaceMoved * (back - front) : 0;
-    const Stage stage{front - moved, back - moved};
+    const Stage stage{front, back};
     parallelFor(std::size_t(size_.y), [&](std::size_t y) {
         for (int x = 0; x < size_.x; ++x) {
             const float alpha = picture.pixel(x, int(y))[3];

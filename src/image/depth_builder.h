@@ -18,7 +18,7 @@ class DepthBuilder : public DeepStages {
     /// How alpha grows on the way through a stage.
     enum class Growth {
         kFog,      ///< as that of a fog that is everywhere alike
-        kSurface,  ///< as a surface's voxels are there by the share that lies inside
+        kSurface,  ///< evenly, as surfaces are met
     };
 
     /// @param opacity  of front()

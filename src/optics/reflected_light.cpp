@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optics/reflected_light.h"
-#include "deltasplat/splat/footprint.h"
-#include "portable_math.h"
 #include "unit_vector.h"
 #include "view/affine.h"
 
@@ -9,6 +7,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_access.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 
@@ -37,43 +36,15 @@ glm::vec3 halfWay(const glm::dvec3& a, const glm::dvec3& b) {
     return glm::vec3(length > 0 ? (a + b) / length : glm::dvec3(0));
 }
 
-// How many pixels of the screen a voxel covers at most, seen in parallel.
-double pixelsPerVoxel(const LitScene& scene) {
-    const Camera& camera = scene.camera;
-    const auto onScreen = [&](const glm::dvec3& step) {
-        return glm::dvec2(glm::dot(step, camera.right) / camera.pixelWorld(),
-                          glm::dot(step, camera.up) / camera.pixelHeightWorld());
-    };
-    const glm::dvec2 u = onScreen(glm::dvec3(scene.worldFromVoxel[1]));
-    const glm::dvec2 v = onScreen(glm::dvec3(scene.worldFromVoxel[2]));
-    const double mean = (glm::dot(u, u) + glm::dot(v, v)) / 2;
-    return std::sqrt(mean + portable::hypot((glm::dot(u, u) - glm::dot(v, v)) / 2, glm::dot(u, v)));
-}
-
-// The variance of what a voxel is seen in along an axis of its sheet, in voxels: the footprint's,
-// where nothing else is asked for.
-double footprintVariance(double pixels) {
-    if (hasOwnPixel(pixels, 1)) return 0;
-    const double sigma = defaultSigma(pixels, 1);
-    const double beside = portable::exp(-1 / (2 * sigma * sigma));
-    return 2 * beside / (1 + 2 * beside);
-}
-
-// How much more of a voxel at an outline has to be missing, of OwnLook::kAll, for voxels beside
-// each other share in what they show, of a slice that is read between them along an axis as well
-// (docs/decisions.md).
-int blurOfOutlines(const LitScene& scene) {
-    constexpr double kWhole = 1e-6;
-    constexpr double kReadBetween = 1.0 / 6;
-    constexpr double kPerVariance = 0.75;
-    const bool isParallel = scene.camera.projection == Projection::kOrtho;
-    const glm::dvec3 step = glm::inverse(glm::dmat3(scene.worldFromVoxel)) * scene.camera.direction;
-    double variance = isParallel ? footprintVariance(pixelsPerVoxel(scene)) : 0;
-    for (const double along : {step.y / step.x, step.z / step.x}) {
-        const bool isBetween = std::abs(along - std::round(along)) > kWhole;
-        if (isBetween || !isParallel) variance += kReadBetween / 2;
-    }
-    return int(std::lround(kPerVariance * variance * OwnLook::kAll));
+CutVoxels cutVoxelsOf(const LitScene& scene) {
+    const glm::dmat3 steps(scene.worldFromVoxel);
+    const double unit = glm::length(steps[0]);
+    const glm::dmat3 voxelFromWorld = glm::inverse(steps / unit);
+    CutVoxels cut;
+    for (int i = 0; i < 3; ++i) cut.steps[std::size_t(i)] = glm::vec3(steps[i] / unit);
+    cut.perSlice = glm::vec3(glm::row(voxelFromWorld, 0));
+    cut.blur = glm::vec3(scene.blur);
+    return cut;
 }
 
 }  // namespace
@@ -88,7 +59,7 @@ ReflectedLight::ReflectedLight(const Shading& shading, const ClassTable& classes
     reflection_.ambient = float(shading.ambient);
     reflection_.shininess = float(shading.shininess);
     reflection_.hasSpecular = shading.specular > 0;
-    reflection_.isSolid = isSolid;
+    if (isSolid) reflection_.cut = cutVoxelsOf(scene);
     reflection_.fromEye = camera.projection != Projection::kOrtho;
     reflection_.toCamera = glm::vec3(toCamera);
     for (const Light& light : shading.lights) {
@@ -100,13 +71,12 @@ ReflectedLight::ReflectedLight(const Shading& shading, const ClassTable& classes
                                     glm::vec3(shading.specular * intensity * shares)});
     }
     if (reflection_.fromEye) eye_.emplace(camera.eyeWorld(), scene.worldFromVoxel);
-    if (isSolid) setMoreMissing(blurOfOutlines(scene));
 }
 
 bool ReflectedLight::isLike(const LookLight& other) const {
     const auto* same = dynamic_cast<const ReflectedLight*>(&other);
-    return same && moreMissing() == same->moreMissing() && units() == same->units() &&
-           reflection_ == same->reflection_ && colors_ == same->colors_ && eye_ == same->eye_;
+    return same && units() == same->units() && reflection_ == same->reflection_ &&
+           colors_ == same->colors_ && eye_ == same->eye_;
 }
 
 void ReflectedLight::lightVoxels(const WordPlace& place, const std::uint16_t* classes,

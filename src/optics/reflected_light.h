@@ -13,7 +13,7 @@ namespace deltasplat {
 /// What surfaces reflect towards a camera. Looks are gradients (lookOfGradient).
 class ReflectedLight : public LookLight {
   public:
-    /// @param isSolid  as Reflection's
+    /// @param isSolid  whether gradients point out of something, whose surface is all that is seen
     ReflectedLight(const Shading& shading, const ClassTable& classes, const LitScene& scene,
                    bool isSolid = false);
     bool isLike(const LookLight& other) const override;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <optional>
 #include <vector>
 
 #include "optics/voxel_painter.h"
@@ -24,16 +26,33 @@ struct Ray {
     bool operator==(const Ray&) const = default;
 };
 
+/// Heights (OwnLook) above a surface are in sizes of a voxel, which is the root of the sum of
+/// squares of what its edges go along the normal: from kMostHeight on nothing of a voxel is seen,
+/// and 0 is kMostDepth below.
+inline constexpr float kMostHeight = 1.5;
+inline constexpr float kMostDepth = 3;
+/// Numbers of OwnLook::height that a size takes.
+inline constexpr float kHeightSteps = OwnLook::kAll / (kMostHeight + kMostDepth);
+
+/// What tells how much is seen of voxels by or below a surface.
+struct CutVoxels {
+    /// In the world, in any unit: from a voxel to the next along slice, u and v.
+    std::array<glm::vec3, 3> steps;
+    glm::vec3 perSlice;  ///< of what the product with a way in that unit is how many slices it goes
+    glm::vec3 blur;      ///< LitScene's
+
+    bool operator==(const CutVoxels&) const = default;
+};
+
 /// What voxels reflect (Shading).
 struct Reflection {
     float ambient;
     float shininess;
     bool hasSpecular;
     std::vector<Ray> rays;
-    /// Whether gradients point out of what is solid: of those that face away from the camera
-    /// nothing is seen but what the outline shares with them. Otherwise either side of one may face
-    /// the camera.
-    bool isSolid;
+    /// Of what is solid, which gradients point out of; otherwise either side of one may face the
+    /// camera.
+    std::optional<CutVoxels> cut;
     bool fromEye;        ///< each voxel has its own way to the camera
     glm::vec3 toCamera;  ///< of length 1, unless it has
 

@@ -20,7 +20,7 @@ Shading unlit() {
     return shading;
 }
 
-// Looks are directions out of what is inside, and how much of a voxel lies outside.
+// Looks are directions out of what is inside, and heights of voxels above its surface.
 class SurfacePainter : public VoxelPainter {
   public:
     SurfacePainter(const Volume& volume, const Surface& surface, const Shading& shading)
@@ -41,26 +41,24 @@ class SurfacePainter : public VoxelPainter {
     bool needsColors() const override { return true; }
     bool choosesClasses() const override { return true; }
     bool isSeenItself(Code code) const override { return scale_.ofCode[code] >= 0; }
+    int heightOfSurface() const override { return int(kMostDepth * kHeightSteps); }
     bool dependsOnCamera() const override { return true; }
     const GradientScale* gradientScale() const override { return &scale_; }
 
     void paint(const BlockPlace& place, const BlockField* field,
                std::span<std::uint16_t, 512> classes,
                std::span<OwnLook, 512> looks) const override {
-        glm::vec3 size(0);  // of a voxel, along x, y and z
+        glm::vec3 size(0);  // of a voxel, along x, y and z; each is along one of them
         for (int i = 0; i < 3; ++i) size += glm::abs(glm::vec3(place.steps[i]));
         const auto& [gx, gy, gz] = field->gradients;
         for (std::size_t n = 0; n < looks.size(); ++n) {
             const float value = field->values[n];
-            // From the voxel's lowest corner to its highest.
-            const float span =
-                std::abs(gx[n]) * size.x + std::abs(gy[n]) * size.y + std::abs(gz[n]) * size.z;
             const glm::vec3 steps(gx[n] * size.x, gy[n] * size.y, gz[n] * size.z);
-            const int inside = insideOf(value, span, std::sqrt(glm::dot(steps, steps)));
-            classes[n] = inside > 0 ? 1 : 0;
+            const int height = heightOf(value, std::sqrt(glm::dot(steps, steps)));
+            classes[n] = height < OwnLook::kAll ? 1 : 0;
             looks[n] = {};
-            looks[n].missing = std::uint8_t(OwnLook::kAll - inside);
-            if (inside == 0 || value > kDeep * span) continue;
+            looks[n].height = std::uint8_t(height);
+            if (height == 0 || height == OwnLook::kAll) continue;
             const glm::vec3 gradient = worldGradient(worldFromGradient_, *field, n);
             const float length = std::sqrt(gradient.x * gradient.x + gradient.y * gradient.y +
                                            gradient.z * gradient.z);
@@ -74,19 +72,13 @@ class SurfacePainter : public VoxelPainter {
     }
 
   private:
-    // Voxels below the surface, from which on nothing of a voxel can be seen.
-    static constexpr float kDeep = 3;
-    // In voxels, how far the surface is moved inwards. Several slices show each some of what they
-    // share with what is outside, which makes things look larger (docs/decisions.md).
-    static constexpr float kInset = 0.45f;
-
-    // The share of a voxel that lies inside, of OwnLook::kAll, if values change evenly.
-    // @param step  what values change by across a voxel, along their gradient
-    static int insideOf(float value, float span, float step) {
-        if (!(value == value)) return 0;
-        if (!(span > 0)) return value >= 0 ? OwnLook::kAll : 0;
-        const float share = std::clamp((value - kInset * step) / span + 0.5f, 0.0f, 1.0f);
-        return int(share * float(OwnLook::kAll) + 0.5f);
+    // OwnLook::height of a voxel, if values change evenly.
+    // @param step  by how much, across a voxel
+    static int heightOf(float value, float step) {
+        if (!(value == value)) return OwnLook::kAll;
+        if (!(step > 0)) return value >= 0 ? 0 : OwnLook::kAll;
+        const float depth = std::clamp(value / step, -kMostHeight, kMostDepth);
+        return int((kMostDepth - depth) * kHeightSteps + 0.5f);
     }
 
     Shading shading_;

@@ -32,20 +32,6 @@ void LookLight::fade(const std::uint16_t* classes, const OwnLook* looks, WordUni
     }
 }
 
-// What is missing is missing of all channels alike.
-void LookLight::leaveMissing(const OwnLook* looks, WordUnits& colors) const {
-    unsigned any = 0;
-    for (std::size_t n = 0; n < 64; ++n) any |= looks[n].missing;
-    if (any == 0) return;
-    std::array<float, 64> shares;
-    for (std::size_t n = 0; n < 64; ++n) {
-        const int missing = looks[n].missing == 0 ? 0 : looks[n].missing + moreMissing_;
-        shares[n] = float(std::max(OwnLook::kAll - missing, 0)) / OwnLook::kAll;
-    }
-    for (auto& channel : colors)
-        for (std::size_t n = 0; n < 64; ++n) channel[n] *= shares[n];
-}
-
 std::unique_ptr<const VoxelPainter> makePainter(const Volume& volume, const Optics& optics) {
     checkOptics(optics);
     const bool isMedium = !optics.parts.empty() || optics.colorGrids;

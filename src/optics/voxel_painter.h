@@ -23,7 +23,7 @@ namespace deltasplat {
 /// of it there is. What has the same class and the same look is seen alike from everywhere.
 struct OwnLook {
     std::array<std::uint16_t, 3> bits{};
-    std::uint8_t missing = 0;  ///< the share of the voxel that is not there, of kAll
+    std::uint8_t height = 0;  ///< above a surface, as its painter counts; 0: far below
     /// The share of its class' opacity over a unit distance that it has not, of kAll.
     std::uint8_t faded = 0;
 
@@ -86,7 +86,6 @@ class LookLight {
                WordUnits& colors) const {
         lightVoxels(place, classes, looks, colors);
         fade(classes, looks, colors);
-        leaveMissing(looks, colors);
     }
 
   protected:
@@ -94,23 +93,17 @@ class LookLight {
     ///                 as it is
     explicit LookLight(VoxelUnits units, double dimmest = 1)
         : units_(std::move(units)), dimmest_(dimmest) {}
-    /// As light(), of voxels that nothing is missing of.
+    /// As light(), of voxels that are not faded.
     virtual void lightVoxels(const WordPlace& place, const std::uint16_t* classes,
                              const OwnLook* looks, WordUnits& colors) const = 0;
     void setFine() { isFine_ = true; }
-    /// Lets more be missing of voxels that something is missing of.
-    /// @param share  of OwnLook::kAll
-    void setMoreMissing(int share) { moreMissing_ = share; }
-    int moreMissing() const { return moreMissing_; }
 
   private:
     void fade(const std::uint16_t* classes, const OwnLook* looks, WordUnits& colors) const;
-    void leaveMissing(const OwnLook* looks, WordUnits& colors) const;
 
     VoxelUnits units_;
     double dimmest_;
     bool isFine_ = false;
-    int moreMissing_ = 0;
 };
 
 /// Blocks of 8x8x8 voxels.
@@ -123,6 +116,8 @@ struct BlockSet {
 struct LitScene {
     const Camera& camera;
     glm::dmat4 worldFromVoxel;  ///< of voxels as words count them: (slice, u, v)
+    /// The covariance of where in its slice a voxel is seen, in such voxels: uu, vv and uv.
+    glm::dvec3 blur;
     int sliceAxis;
 };
 
@@ -137,8 +132,10 @@ class VoxelPainter {
     /// is of a class that is.
     virtual bool choosesClasses() const { return false; }
     /// If it does, whether a voxel of a code is seen for itself: then it is shown, in class 1 and
-    /// as any OwnLook is at first, where nothing that it is divided into is seen.
+    /// as any OwnLook is at first, where nothing that it is divided into is inside.
     virtual bool isSeenItself(Code /*code*/) const { return false; }
+    /// If it does, the OwnLook::height up to which voxels are inside of what they are of.
+    virtual int heightOfSurface() const { return OwnLook::kAll; }
     /// What gradients are to be taken of; null: it needs none.
     virtual const GradientScale* gradientScale() const { return nullptr; }
     /// Paints the voxels of a block that can be seen; what others get is of no consequence.

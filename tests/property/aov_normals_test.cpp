@@ -112,9 +112,7 @@ TEST(AovNormals, ofABallAreItsRadii) {
                     }
                 }
                 EXPECT_GT(met, 300);
-                // What makes outlines as large as the ball lets normals come from a little farther
-                // inside.
-                EXPECT_LT(angle, isSurface ? (between == 0 ? 8 : 3.5) : 3);
+                EXPECT_LT(angle, between == 0 && isSurface ? 6 : 3);
                 // Of a function's ramp not all of a voxel is shaded.
                 EXPECT_GT(shortest, isSurface ? 0.98 : 0.9);
                 EXPECT_LT(longest, isSurface ? 1.02 : 0.98);

@@ -103,21 +103,26 @@ TEST(LevelSetBand, ThinOrLopsidedIsSolidAndWhereItIs) {
         const RenderOptions options = surfaceFrom(direction);
         const auto even = ball<openvdb::FloatGrid>(10, 3, 3, Inside::kEndOfBand);
         const double radius = coveredRadius(render(read(even, LevelSetSurface{}), options).image);
+        const auto expectIt = [&](const openvdb::GridBase::Ptr& grid, double near = 0.05) {
+            const Image image = render(read(grid, LevelSetSurface{}), options).image;
+            EXPECT_GT(leastWithin(image, 9), 0.999);
+            EXPECT_NEAR(coveredRadius(image), radius, near);
+        };
         for (const double inner : {0.2, 0.6, 1.0, 1.5}) {
-            for (const Inside inside :
-                 {Inside::kEndOfBand, Inside::kMinusBackground, Inside::kTiles}) {
-                SCOPED_TRACE(std::to_string(inner) + " " + std::to_string(int(inside)));
-                const auto thin = ball<openvdb::FloatGrid>(10, inner, 3, inside);
-                const Image image = render(read(thin, LevelSetSurface{}), options).image;
-                EXPECT_GT(leastWithin(image, 9), 0.999);
-                EXPECT_NEAR(coveredRadius(image), radius, 0.05);
+            for (const double outer : {0.2, 0.5, 1.0, 3.0}) {
+                for (const Inside inside :
+                     {Inside::kEndOfBand, Inside::kMinusBackground, Inside::kTiles}) {
+                    SCOPED_TRACE(std::to_string(inner) + " " + std::to_string(outer) + " " +
+                                 std::to_string(int(inside)));
+                    // Few voxels of a band of 0.4 have another beside them.
+                    const bool isThinnest = inner + outer < 0.5;
+                    expectIt(ball<openvdb::FloatGrid>(10, inner, outer, inside),
+                             isThinnest ? 0.15 : 0.05);
+                }
             }
         }
-        const auto outward = ball<openvdb::DoubleGrid>(10, 3, 0.2, Inside::kEndOfBand);
         SCOPED_TRACE("outward");
-        const Image image = render(read(outward, LevelSetSurface{}), options).image;
-        EXPECT_GT(leastWithin(image, 9), 0.999);
-        EXPECT_NEAR(coveredRadius(image), radius, 0.05);
+        expectIt(ball<openvdb::DoubleGrid>(10, 3, 0.2, Inside::kEndOfBand));
     }
 }
 
@@ -200,10 +205,14 @@ TEST(SurfaceOutline, IsThatOfTheBall) {
         const Volume volume = read(grid, LevelSetSurface{});
         for (const glm::dvec3& direction : kDirections) {
             for (const int pixels : {96, 320, 480}) {
-                RenderOptions options = surfaceFrom(direction);
-                options.camera.sizePixels = {pixels, pixels};
-                const double got = coveredRadius(render(volume, options).image);
-                EXPECT_NEAR(got, radius, radius > 5 ? 0.1 : 0.2) << direction.x << " " << pixels;
+                for (const int between : {0, 1, 3}) {
+                    RenderOptions options = surfaceFrom(direction);
+                    options.camera.sizePixels = {pixels, pixels};
+                    options.between = between;
+                    const double got = coveredRadius(render(volume, options).image);
+                    EXPECT_NEAR(got, radius, radius > 5 || between > 0 ? 0.07 : 0.12)
+                        << direction.x << " " << pixels << " between " << between;
+                }
             }
         }
     }

@@ -82,13 +82,12 @@ TEST(DepthBuilder, theMeanIsByGrowth) {
     EXPECT_FLOAT_EQ(toldOf({0.5f, 0.75f, 0.01f}, 0.5).mean, 13.25f + 0.5f / 3);
 }
 
-// A surface's voxel that is there by a half is cut in the middle, and a quarter is taken back.
-TEST(DepthBuilder, surfacesLieBetweenTheMiddlesOfSlices) {
+// What a surface's voxel hides it does evenly from the front of its slice to the back.
+TEST(DepthBuilder, surfacesAreMetWithinTheirSlices) {
     const Told told = toldOf({0, 0.25f, 1}, 0.5, Growth::kSurface);
-    const double surface = 13 + 0.5 * (1.5 + 0.25 / 0.75 - 0.25);
-    EXPECT_NEAR(told.front, surface, 1e-6);
-    EXPECT_NEAR(toldOf({0, 0.5f, 1}, 0.5, Growth::kSurface).front, 13 + 0.5 * (1.5 - 0.25), 1e-6);
-    EXPECT_NEAR(toldOf({0, 0.5f, 1}, 0.5, Growth::kSurface).mean, 13 + 0.5 * (1.5 - 0.25), 1e-6);
+    EXPECT_NEAR(told.front, 13 + 0.5 * (2 + 0.25 / 0.75), 1e-6);
+    EXPECT_NEAR(toldOf({0, 0.5f, 1}, 0.5, Growth::kSurface).front, 13 + 0.5 * 2, 1e-6);
+    EXPECT_NEAR(toldOf({0, 0.5f, 1}, 0.5, Growth::kSurface).mean, 13 + 0.5 * 2, 1e-6);
 }
 
 TEST(DepthBuilder, samplesAreStagesThatAreSeen) {

@@ -27,7 +27,7 @@ using openvdb::Coord;
 // How many voxels deep a surface needs them, and how far outside: found by trying (obliquely, a ray
 // goes 1.7 voxels deep between two that it meets).
 constexpr double kDepth = 1.9;
-constexpr double kHeight = 1.2;
+constexpr double kHeight = 1.5;
 // Of what is going to be cut all is shown: then gradients beside the surface must not see where
 // what fills it begins.
 constexpr double kSolidDepth = 5;
@@ -274,14 +274,16 @@ class BandCompleter {
     // needed.
     std::optional<Value> valueAt(const Coord& place, bool isInside,
                                  const Accessor& accessor) const {
-        double sum = 0, slopes = 0;
+        double sum = 0, slopes = 0, mostGrown = 0;
         int count = 0;
         for (const Coord& side : kSides) {
             const Coord from = place + side;
             Value value;
             if (!accessor.probeValue(from, value) || !std::isfinite(double(value))) continue;
             const openvdb::Vec3d gradient = gradientAt(from, double(value), accessor);
-            sum += double(value) - gradient.dot(side.asVec3d());
+            const double grown = -gradient.dot(side.asVec3d());
+            sum += double(value) + grown;
+            mostGrown = std::max(mostGrown, grown);
             slopes += gradient.length();
             ++count;
         }
@@ -289,21 +291,14 @@ class BandCompleter {
         const double slope = slopes > 0 ? slopes / count : step_;
         double value = sum / count;
         // Where values that go on contradict a sign, they end: a volume's own end is no surface.
-        // Nor is anything needed that is not beside what is inside.
-        if (!isInside && (value < 0 || !hasInsideBeside(place, accessor))) return {};
+        // Nor does what lies outside go on along the surface: away from one, values grow by more
+        // than half of their slope towards some voxel's side.
+        if (!isInside && (value < 0 || mostGrown < slope / 2)) return {};
         const double least = kLeastShare * step_;
         value = isInside ? std::min(value, -least) : std::max(value, least);
         const double height = (value - isovalue_) / slope;
         if (height < -depth_ || height > kHeight) return {};
         return Value(value);
-    }
-
-    bool hasInsideBeside(const Coord& place, const Accessor& accessor) const {
-        return std::any_of(kSides.begin(), kSides.end(), [&](const Coord& side) {
-            Value value;
-            const bool isActive = accessor.probeValue(place + side, value);
-            return double(value) < (isActive ? isovalue_ : 0);
-        });
     }
 
     // How values grow from an active voxel to the next along each axis. Along one where no other is
