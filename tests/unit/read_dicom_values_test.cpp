@@ -451,16 +451,24 @@ TEST(DicomValuesError, MorePicturesThanFrames) {
 }
 
 // An entry of the table of texts that Siemens writes.
-std::string entryOf(const std::string& name, const std::vector<std::string>& items) {
+// @param added  what the first version of tables adds to lengths
+std::string entryOf(const std::string& name, const std::vector<std::string>& items,
+                    std::uint32_t added = 0) {
     std::string entry = name + std::string(64 - name.size(), '\0');
     entry += bytesOf<std::uint32_t>({1}) + std::string("FD\0\0", 4) +
              bytesOf<std::uint32_t>({4, std::uint32_t(items.size()), 77});
     for (std::string item : items) {
         const auto length = std::uint32_t(item.size());
         item.resize((item.size() + 3) / 4 * 4);
-        entry += bytesOf<std::uint32_t>({length, length, 77, length}) + item;
+        entry += bytesOf<std::uint32_t>({length + added, length, 77, length}) + item;
     }
     return entry;
+}
+
+std::string firstTableOfTexts(const std::string& normalZ) {
+    return bytesOf<std::uint32_t>({3, 77}) + entryOf("EchoLinePosition", {"1", "22"}, 2) +
+           entryOf("NumberOfImagesInMosaic", {"3"}, 2) +
+           entryOf("SliceNormalVector", {"0.0", "0.0", normalZ}, 2);
 }
 
 std::string tableOfTexts(int slices, const std::string& normalZ) {
@@ -495,8 +503,12 @@ TEST(DicomValues, MosaicsAreTakenApart) {
     EXPECT_EQ(volume.worldFromIndex[2], glm::dvec4(0, 0, 3, 0));
     EXPECT_EQ(volume.worldFromIndex[3], glm::dvec4(10.25, 20.5, 24, 1));
     EXPECT_EQ(valuesOf(volume), (std::vector<double>{8, 9, 12, 13, 2, 3, 6, 7, 0, 1, 4, 5}));
-    // The count alone, in a block of its own number.
     DicomFile file = mosaic("1.0");
+    file.more[0x00291010] = {"OB", firstTableOfTexts("-1.0")};
+    const Volume first = readFile(file);
+    EXPECT_EQ(first.worldFromIndex, volume.worldFromIndex);
+    EXPECT_EQ(valuesOf(first), valuesOf(volume));
+    // The count alone, in a block of its own number.
     file.more.erase(0x00290010);
     file.more.erase(0x00291010);
     file.more[0x00190011] = {"LO", "SIEMENS MR HEADER"};
@@ -521,8 +533,9 @@ TEST(DicomValuesError, Mosaics) {
     writeBytes("a.dcm", file.bytes());
     expectRefused("a.dcm: got a mosaic of 5 slices in 4x4; expected tiles of one size, 3 in a row",
                   "a.dcm");
-    for (std::size_t size = 0; size < 200; ++size) {
-        file.more[0x00291010] = {"OB", tableOfTexts(3, "1.0").substr(0, size)};
+    for (std::size_t size = 0; size < 400; ++size) {
+        const std::string table = size % 2 == 0 ? tableOfTexts(3, "1.0") : firstTableOfTexts("1.0");
+        file.more[0x00291010] = {"OB", table.substr(0, size / 2)};
         writeBytes("a.dcm", file.bytes());
         try {
             readVolume("a.dcm");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Siemens' mosaics. What they say of themselves stands in private elements: how many slices there
-// are in (0019,xx0A), and all in a table of texts (0029,xx10), of which the second version is read.
+// are in (0019,xx0A), and all in a table of texts (0029,xx10).
 #include "ingest/dicom/dicom_mosaic.h"
 
 #include <charconv>
@@ -38,18 +38,26 @@ std::uint32_t littleEndian(const std::string& bytes, std::size_t place) {
 }
 
 // Entries have a name of 64 bytes, five numbers, of which the fourth counts items, and items of
-// four numbers, of which the second is a length, and a text that fills words of four bytes.
+// four numbers, of which the second is a length, and a text that fills words of four bytes. The
+// first version of tables has no mark, and has lengths as first numbers, to which the number of the
+// first entry's items is added.
 std::map<std::string, std::vector<std::string>> entriesOf(const std::string& bytes) {
     std::map<std::string, std::vector<std::string>> entries;
-    if (bytes.rfind("SV10", 0) != 0 || bytes.size() < 16) return entries;
-    const std::uint32_t count = littleEndian(bytes, 8);
-    std::size_t place = 16;
+    constexpr std::uint32_t kMark = 77, kMostOfFirst = 128;
+    const bool isFirst = !bytes.starts_with("SV10");
+    std::size_t place = isFirst ? 0 : 8;
+    if (bytes.size() < 16) return entries;
+    const std::uint32_t count = littleEndian(bytes, place);
+    if (isFirst && (count > kMostOfFirst || littleEndian(bytes, 4) != kMark)) return entries;
+    place += 8;
+    std::uint32_t added = 0;
     for (std::uint32_t i = 0; i < count && bytes.size() - place >= 84; ++i) {
         const std::string name = bytes.substr(place, 64).c_str();
         const std::uint32_t items = littleEndian(bytes, place + 76);
+        if (isFirst && i == 0) added = items;
         place += 84;
         for (std::uint32_t item = 0; item < items && bytes.size() - place >= 16; ++item) {
-            const std::size_t length = littleEndian(bytes, place + 4);
+            const std::size_t length = littleEndian(bytes, place + (isFirst ? 0 : 4)) - added;
             place += 16;
             if (length > bytes.size() - place) return entries;
             if (length > 0) entries[name].emplace_back(bytes.substr(place, length).c_str());
