@@ -51,11 +51,16 @@ integers c.npy u8 7 $(((1 << 63) + 5)) 5
 integers d.npy u8 7 $(((1 << 63) + 4)) 5
 differ 2 c.npy d.npy "values are 9223372036854775813 vs 9223372036854775812"
 differ 0 c.npy c.npy "PASS"
-# A copy that has lost digits on the way is told from what it was made of.
-for file in b.u8 c; do
-    "$program" convert $file.npy lossy.vdb -q 2>/dev/null
-    differ 2 $file.npy lossy.vdb "FAILURE"
+# A copy has all digits, where its format holds them; one that has lost some is told from what it
+# was made of.
+for file in b.i8.npy b.u8.npy; do
+    "$program" convert $file same.vdb -q 2>/dev/null
+    differ 0 $file same.vdb "PASS"
 done
+"$program" convert c.npy same.npy -q
+cmp c.npy same.npy
+"$program" convert c.npy lossy.vdb -q 2>/dev/null
+differ 2 c.npy lossy.vdb "FAILURE"
 for options in "--tolerance 0.9" "--tolerance-value 50"; do
     # shellcheck disable=SC2086
     "$program" delta cube_8x8x8_uint8.raw lossy.vdb $options -q >/dev/null
