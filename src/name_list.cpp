@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "count_text.h"
+
 namespace deltasplat {
 
 namespace {
@@ -23,7 +25,7 @@ std::string nameList(const std::vector<std::string>& names) {
     const std::size_t named = names.size() <= kMost + 1 ? names.size() : kMost;
     std::string list;
     for (std::size_t i = 0; i < named; ++i) list += (i == 0 ? "" : ", ") + shortened(names[i]);
-    if (named < names.size()) list += " and " + std::to_string(names.size() - named) + " others";
+    if (named < names.size()) list += " and " + countText(names.size() - named, "other");
     return list;
 }
 

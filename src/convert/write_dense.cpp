@@ -14,6 +14,7 @@
 #include "convert/dense_values.h"
 #include "convert/packed_output.h"
 #include "convert/value_facts.h"
+#include "count_text.h"
 #include "deltasplat/error.h"
 #include "ingest/files/file_name.h"
 #include "ingest/grids/grid_metadata.h"
@@ -85,10 +86,12 @@ void noteLostStates(const Volume& volume, const IndexBox& box, Notes& notes) {
     if (!volume.hasBackground) return;
     const std::uint64_t inactive = voxelsOf(box) - volume.activeCount;
     if (inactive != 0) {
-        notes.loss(std::to_string(inactive) +
-                   " inactive voxels become voxels like the others, with the value they hold "
-                   "(background " +
-                   numberText(volume.background) + ")");
+        notes.loss(
+            countText(inactive,
+                      "inactive voxel becomes a voxel like the others, with the value it holds",
+                      "inactive voxels become voxels like the others, with the value they "
+                      "hold") +
+            " (background " + numberText(volume.background) + ")");
     }
     // What was no grid before has no more than its file's name.
     if (volume.source && !volume.source->grid.metadata.text(kSourceTypeKey).empty()) return;

@@ -10,6 +10,7 @@
 #include "convert/half_exact.h"
 #include "convert/volume_grid.h"
 #include "convert/write_report.h"
+#include "count_text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "ingest/grids/source_grid.h"
@@ -73,8 +74,9 @@ TreeGrid sparseGrid(const TreeGrid& grid, const Volume& volume, const WriteOptio
     TreeGrid sparse = dropBackground(grid, value);
     const std::uint64_t kept = sparse.tree->activeVoxelCount();
     if (volume.hasBackground && kept != volume.activeCount) {
-        notes.loss(quoted(volume.name) + ": " + std::to_string(volume.activeCount - kept) +
-                   " active voxels of value " + numberText(value) + " made inactive");
+        notes.loss(quoted(volume.name) + ": " +
+                   countText(volume.activeCount - kept, "active voxel") + " of value " +
+                   numberText(value) + " made inactive");
     }
     return sparse;
 }

@@ -2,6 +2,7 @@
 #include <limits>
 #include <string>
 
+#include "count_text.h"
 #include "default_floats.h"
 #include "ingest/files/file_name.h"
 #include "ingest/files/refuse_file.h"
@@ -67,8 +68,10 @@ DepthImage image_module::readDepthImage(const std::filesystem::path& file,
         if (!(depth > 0) || depth >= kNothing) depth = std::numeric_limits<float>::infinity();
     }
     if (odd > 0) {
-        listener.warn(file.string() + ": " + std::to_string(odd) +
-                      " pixels whose depth is not above 0 stand for nothing there");
+        listener.warn(file.string() + ": " +
+                      countText(std::uint64_t(odd), "pixel whose depth is not above 0 stands",
+                                "pixels whose depth is not above 0 stand") +
+                      " for nothing there");
     }
     return result;
 }

@@ -11,6 +11,7 @@
 #include <limits>
 #include <utility>
 
+#include "count_text.h"
 #include "deltasplat/error.h"
 #include "memory.h"
 #include "number_text.h"
@@ -411,7 +412,7 @@ std::string UsdValue::quoted() const {
         case Kind::kPath:
             return "<" + printable(text) + ">";
         case Kind::kItems:
-            return std::to_string(items.size()) + " values";
+            return countText(items.size(), "value");
         case Kind::kSkipped:
             return "a list";
     }

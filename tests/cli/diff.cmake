@@ -27,10 +27,10 @@ set(one "  Mean error = 0.005859375
   RMS error = 0.1325825214724[0-9]*
   Max error = 3 @ [(]5,1,1[)], in the world [(]5,1,2[)]; values are 77 vs 80
 ")
-deltasplat_diff(different 2 "${one}  1 voxels [(]0.195%[)] over 0
-  1 voxels [(]0.195%[)] over 0
+deltasplat_diff(different 2 "${one}  1 voxel [(]0.195%[)] over 0
+  1 voxel [(]0.195%[)] over 0
 FAILURE$" ${cube} ${changed} --spacing 1,1,2)
-deltasplat_diff(warning 1 "${one}  1 voxels [(]0.195%[)] over 2.5
+deltasplat_diff(warning 1 "${one}  1 voxel [(]0.195%[)] over 2.5
   0 voxels [(]0%[)] over 3
 WARNING$" ${cube} ${changed} --spacing 1,1,2 -fail 3 -warn 2.5)
 deltasplat_diff(one_dash_equals 0 "over 3

@@ -136,7 +136,7 @@ deltasplat_cli_test(several.diff_other.series EXIT 2 ARGS diff series thorax --s
     STDOUT_MATCHES "FAILURE")
 
 # A study is the slices below it, whatever else lies there.
-set(beside "deltasplat: warning: study: 1 files that are no DICOM are passed over, the first logo.png")
+set(beside "deltasplat: warning: study: 1 file that is no DICOM is passed over, logo.png")
 deltasplat_cli_test(several.list.study ARGS info --list study STDERR "${beside}"
     STDOUT_MATCHES "^study
   study  uint16  -  [(]0, 0, 0[)] to [(]2, 1, 1[)]  series 1.2.8: CT, head

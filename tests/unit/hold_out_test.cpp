@@ -71,7 +71,7 @@ TEST(HoldOut, readsChannelsOfDepth) {
     const DepthImage read = readDepthImage(file, listener);
     const float nothing = std::numeric_limits<float>::infinity();
     EXPECT_EQ(read.depths, (std::vector<float>{1.5f, nothing, nothing}));
-    EXPECT_NE(warned.find("1 pixels whose depth is not above 0"), std::string::npos);
+    EXPECT_NE(warned.find("1 pixel whose depth is not above 0 stands"), std::string::npos);
     options.channels.push_back({"depth", {7, 8, 9}});
     writeImage(file, image, options);
     EXPECT_EQ(readDepthImage(file).depths, (std::vector<float>{7, 8, 9}));

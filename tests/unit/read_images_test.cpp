@@ -197,8 +197,7 @@ TEST(ReadImages, Folder) {
     EXPECT_EQ(volume.name, "stack");
     EXPECT_EQ(valuesOf(volume), ramp<double>(36));
     EXPECT_EQ(warnings.lines,
-              std::vector<std::string>{
-                  "stack: 1 files that are no images are passed over, the first notes.txt"});
+              std::vector<std::string>{"stack: 1 file that is no image is passed over, notes.txt"});
 }
 
 TEST(ReadImages, SpacingAndOrigin) {

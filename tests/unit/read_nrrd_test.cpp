@@ -327,7 +327,7 @@ TEST(ReadNrrd, NaNIsReplaced) {
     values[7] = NAN;
     writeBytes("a.nrrd", nrrd({{"type", "float"}}) + "\n" + bytesOf(values));
     expectRefused(
-        "a.nrrd: got 1 NaN or infinite values, the first at (3, 1, 0); expected finite values "
+        "a.nrrd: got 1 NaN or infinite value, the first at (3, 1, 0); expected finite values "
         "(`nanValue` VALUE replaces them)",
         "a.nrrd");
     ReadOptions options;

@@ -193,7 +193,7 @@ TEST(VdbValues, WhatIsNotFiniteIsRefusedOrReplaced) {
         grid->tree().setValue(openvdb::Coord(803, 2, 1), std::numeric_limits<float>::infinity());
         writeAs(openvdb::io::COMPRESS_BLOSC, grid);
         expectError(ErrorCode::kInput,
-                    "a.vdb: grid \"a\": got 1 NaN or infinite active values, the first at "
+                    "a.vdb: grid \"a\": got 1 NaN or infinite active value, the first at "
                     "(803, 2, 1); expected finite values (`nanValue` VALUE replaces them)",
                     [] { readVolume("a.vdb"); });
         ReadOptions options;

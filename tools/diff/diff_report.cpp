@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <glm/vec4.hpp>
 
+#include "count_text.h"
 #include "dims_text.h"
 #include "number_text.h"
 #include "options/parse.h"
@@ -103,9 +104,7 @@ std::string assumedText(const GridDiff& grid) {
 
 std::string activeText(const GridDiff& grid) {
     const std::uint64_t mismatch = grid.comparison.activeMismatch;
-    const auto count = [](const Volume& volume) {
-        return std::to_string(volume.activeCount) + " voxels";
-    };
+    const auto count = [](const Volume& volume) { return countText(volume.activeCount, "voxel"); };
     if (mismatch == 0) return count(grid.a);
     return "A has " + count(grid.a) + ", B has " + count(grid.b) + "; " + std::to_string(mismatch) +
            " in one of them only";
@@ -125,8 +124,8 @@ std::string overText(std::uint64_t over, std::uint64_t voxels, double threshold)
     char percent[32];
     std::snprintf(percent, sizeof percent, "%.3g",
                   voxels > 0 ? 100 * double(over) / double(voxels) : 0.0);
-    return "  " + std::to_string(over) + " voxels (" + percent + "%) over " +
-           numberText(threshold) + "\n";
+    return "  " + countText(over, "voxel") + " (" + percent + "%) over " + numberText(threshold) +
+           "\n";
 }
 
 std::string maxText(const GridDiff& grid) {

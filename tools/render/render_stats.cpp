@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "count_text.h"
 #include "deltasplat/simd.h"
 #include "deltasplat/threads.h"
 #include "number_text.h"
@@ -31,7 +32,7 @@ std::string partsText(const RenderStats& stats) {
 
 std::string deepSummary(const DeepStats& deep) {
     if (deep.slicesPerSample == 0) return "";
-    return std::to_string(deep.samples) + " samples, at most " + std::to_string(deep.mostSamples) +
+    return countText(deep.samples, "sample") + ", at most " + std::to_string(deep.mostSamples) +
            " in a pixel\n";
 }
 

@@ -29,6 +29,23 @@ std::string withoutNumbers(const std::string& text) {
     return rest;
 }
 
+// Words of one thing and of several are the same: "value is" and "values are".
+std::string withoutPlurals(const std::string& text) {
+    std::string rest, word;
+    for (std::size_t i = 0; i <= text.size(); ++i) {
+        if (i < text.size() && isOfWord(text[i])) {
+            word += text[i];
+            continue;
+        }
+        if (word == "are") word = "is";
+        if (word.ends_with('s')) word.pop_back();
+        rest += word;
+        word.clear();
+        if (i < text.size()) rest += text[i];
+    }
+    return rest;
+}
+
 }  // namespace
 
 std::string frameLine(const FrameFiles& files, const std::string& what) {
@@ -75,7 +92,7 @@ void FrameWarnings::show(std::size_t i, const std::string& text) {
         about.erase(at, file.size());
         if (isOutput) kind = '\n';
     }
-    kind += withoutNumbers(about);
+    kind += withoutPlurals(withoutNumbers(about));
     // The first one of its kind is shown.
     const auto [known, isNew] = warnings_.emplace(kind, Warning{i, about, false, false, {}});
     Warning& warning = known->second;

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "count_text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/memory_limit.h"
 #include "ingest/codes/code_counts.h"
@@ -70,12 +71,11 @@ RawScan scan(const DenseSource& source, const ReadOptions& options, const Listen
 void settleNonFinite(const DenseSource& source, RawScan& scan, std::optional<double> nanValue) {
     if (scan.nonFinite == 0) return;
     if (!nanValue) {
-        throw Error(
-            ErrorCode::kInput,
-            gotExpected(source.where,
-                        std::to_string(scan.nonFinite) + " NaN or infinite values, the first at " +
-                            placeText(source.dims, scan.firstNonFinite),
-                        "finite values (`nanValue` VALUE replaces them)"));
+        throw Error(ErrorCode::kInput,
+                    gotExpected(source.where,
+                                countText(scan.nonFinite, "NaN or infinite value") +
+                                    ", the first at " + placeText(source.dims, scan.firstNonFinite),
+                                "finite values (`nanValue` VALUE replaces them)"));
     }
     if (source.type == RawType::kFloat32) {
         requireFloatNan(*nanValue);
@@ -143,8 +143,8 @@ void warnOfChanges(const DenseSource& source, const ReadOptions& options, const 
                    const Listener& listener) {
     for (const std::string& note : source.notes) listener.warn(source.where + ": " + note);
     if (volume.replaced > 0) {
-        listener.warn(source.where + ": " + std::to_string(volume.replaced) +
-                      " NaN or infinite values replaced by " + numberText(*options.nanValue));
+        listener.warn(source.where + ": " + countText(volume.replaced, "NaN or infinite value") +
+                      " replaced by " + numberText(*options.nanValue));
     }
     if (volume.readError > 0) {
         listener.warn(source.where + ": values read as the nearest doubles, off by up to " +
@@ -401,8 +401,10 @@ void requireLimit(const DenseSource& source, const ReadOptions& options, bool ke
 void warnOfNothing(const DenseSource& source, const Volume& volume, const Listener& listener) {
     const std::uint64_t count = std::uint64_t(volume.box.voxels()) - volume.activeCount;
     if (count == 0) return;
-    listener.warn(source.where + ": " + std::to_string(count) +
-                  " voxels hold what fills pictures up and count as nothing");
+    listener.warn(source.where + ": " +
+                  countText(count, "voxel holds what fills pictures up and counts",
+                            "voxels hold what fills pictures up and count") +
+                  " as nothing");
 }
 
 // Reads a volume of which some voxels are nothing: inactive, with the least of the others' values

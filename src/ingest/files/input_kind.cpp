@@ -7,6 +7,7 @@
 #include <set>
 #include <system_error>
 
+#include "count_text.h"
 #include "deltasplat/error.h"
 #include "ingest/dicom/dicom_sniff.h"
 #include "ingest/files/file_name.h"
@@ -70,9 +71,12 @@ void warnOfOthers(const std::filesystem::path& folder, const Files& all, const F
     if (all.size() == taken.size()) return;
     // Both are in one order.
     const auto other = std::mismatch(all.begin(), all.end(), taken.begin(), taken.end()).first;
-    listener.warn(folder.string() + ": " + std::to_string(all.size() - taken.size()) +
-                  " files that are no " + what + " are passed over, the first " +
-                  printable(other->filename().string()));
+    const std::string one = what == "images" ? "image" : what;
+    listener.warn(folder.string() + ": " +
+                  countText(all.size() - taken.size(),
+                            "file that is no " + one + " is passed over,",
+                            "files that are no " + what + " are passed over, the first") +
+                  " " + printable(other->filename().string()));
 }
 
 template <typename Test>

@@ -12,6 +12,7 @@
 #include <utility>
 #include <variant>
 
+#include "count_text.h"
 #include "deltasplat/error.h"
 #include "heap_growth.h"
 #include "ingest/codes/book_encoder.h"
@@ -41,10 +42,10 @@ namespace {
 template <typename Tree>
 void settleNonFinite(Tree& tree, const GridScan& range, const GridCodesOptions& options) {
     if (!options.reading.nanValue) {
-        const std::string got =
-            std::to_string(range.nonFinite) + " NaN or infinite active values, the first at (" +
-            std::to_string(range.first.x()) + ", " + std::to_string(range.first.y()) + ", " +
-            std::to_string(range.first.z()) + ")";
+        const std::string got = countText(range.nonFinite, "NaN or infinite active value") +
+                                ", the first at (" + std::to_string(range.first.x()) + ", " +
+                                std::to_string(range.first.y()) + ", " +
+                                std::to_string(range.first.z()) + ")";
         throw NotFinite(
             ErrorCode::kInput,
             gotExpected(options.where, got, "finite values (`nanValue` VALUE replaces them)"));
@@ -53,9 +54,9 @@ void settleNonFinite(Tree& tree, const GridScan& range, const GridCodesOptions& 
         requireFloatNan(*options.reading.nanValue);
     }
     replaceNonFinite(tree, typename Tree::ValueType(*options.reading.nanValue));
-    options.listener.warn(options.where + ": " + std::to_string(range.nonFinite) +
-                          " NaN or infinite active values replaced by " +
-                          numberText(*options.reading.nanValue));
+    options.listener.warn(options.where + ": " +
+                          countText(range.nonFinite, "NaN or infinite active value") +
+                          " replaced by " + numberText(*options.reading.nanValue));
 }
 
 // What OpenVDB's sdfToFogVolume needs of a grid.
@@ -99,7 +100,8 @@ bool completeLevelSet(TreeGrid& grid, const GridCodesOptions& options) {
     if (added > 0) {
         options.listener.warn(options.where +
                               ": the level set's band ends too near to the surface; " +
-                              std::to_string(added) + " voxels beside it go on as its values do");
+                              countText(added, "voxel beside it goes on as its values do",
+                                        "voxels beside it go on as their values do"));
     }
     return added > 0 || surface->isSolid;
 }

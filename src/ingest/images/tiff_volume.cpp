@@ -11,6 +11,7 @@
 #include <map>
 #include <sstream>
 
+#include "count_text.h"
 #include "deltasplat/error.h"
 #include "ingest/choose_volume.h"
 #include "ingest/files/refuse_file.h"
@@ -40,10 +41,6 @@ struct Planes {
     std::string axes;  // what others than the first three are, for messages
     std::function<std::int64_t(std::int64_t slice, std::int64_t volume)> at;
 };
-
-std::string countText(std::int64_t count, const std::string& name) {
-    return std::to_string(count) + " " + name + (count == 1 ? "" : "s");
-}
 
 std::string axesText(std::int64_t channels, std::int64_t times) {
     return countText(channels, "channel") + ", " + countText(times, "time");
@@ -233,8 +230,9 @@ std::vector<std::int64_t> wholePages(const Path& file, const TiffPages& tiff,
         for (std::size_t i = 0; i < tiff.pages.size(); ++i) pages.push_back(std::int64_t(i));
     } else if (left > 0) {
         listener.warn(file.string() + ": " + std::to_string(left) + " of " +
-                      std::to_string(tiff.pages.size()) +
-                      " pages are thumbnails, smaller copies or masks, and left out");
+                      countText(tiff.pages.size(), "page") +
+                      (left == 1 ? " is a thumbnail, smaller copy or mask, and left out"
+                                 : " are thumbnails, smaller copies or masks, and left out"));
     }
     return pages;
 }

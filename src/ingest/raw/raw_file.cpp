@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 
+#include "count_text.h"
 #include "deltasplat/error.h"
 #include "dims_text.h"
 #include "ingest/files/byte_source.h"
@@ -29,7 +30,7 @@ std::string expectedSize(const RawFile& file) {
 }
 
 [[noreturn]] void throwSize(const RawFile& file, std::uint64_t bytes) {
-    throwSize(file, std::to_string(bytes) + (file.isPacked() ? " bytes unpacked" : " bytes"));
+    throwSize(file, countText(bytes, "byte") + (file.isPacked() ? " unpacked" : ""));
 }
 
 enum class PackedEnd { kIsChecked, kIsKnown };
