@@ -47,23 +47,35 @@ double sharpBlend(double from, double to, double s, double sharpness) {
     return std::clamp(value, std::min(from, to), std::max(from, to));
 }
 
-// How often each code occurs, the one that stands for the background left out.
-std::vector<std::uint64_t> countsWithoutBackground(const Volume& volume) {
-    std::vector<std::uint64_t> counts = uncutHistogram(volume);
+// How often each code occurs, what is cut off included: of a volume that was cut counting takes a
+// walk, so it is asked for once.
+using Counts = std::vector<std::uint64_t>;
+
+// As bulkRange.
+glm::dvec2 bulkOf(const Volume& volume, Counts counts) {
     for (std::size_t code = 0; code < counts.size(); ++code) {
         if (volume.codeBook.standsFor(Code(code), volume.background)) counts[code] = 0;
     }
-    return counts;
+    if (std::all_of(counts.begin(), counts.end(), [](std::uint64_t count) { return count == 0; }))
+        return {volume.background, volume.background + 1};
+    return {volume.codeBook.valueOf(percentileCode(counts, 1)),
+            volume.codeBook.valueOf(percentileCode(counts, 99))};
+}
+
+// As rampRange.
+glm::dvec2 rampOf(const Volume& volume, const Counts& counts) {
+    glm::dvec2 range = bulkOf(volume, counts);
+    if (isFog(volume) && volume.background < range.y) range.x = volume.background;
+    return range;
 }
 
 // Whether most values lie around 0, of cells of the same width, one of which has 0 in its middle.
-bool mostAreNearZero(const Volume& volume, const glm::dvec2& ends) {
+bool mostAreNearZero(const Volume& volume, const glm::dvec2& ends, const Counts& counts) {
     constexpr int kCells = 8;
     const auto cellOf = [&](double value) {
         return kCells + int(std::round(kCells * (value / (ends.y - ends.x))));
     };
     std::vector<std::uint64_t> cells(2 * kCells + 1);
-    const std::vector<std::uint64_t> counts = uncutHistogram(volume);
     for (std::size_t code = 0; code < counts.size(); ++code) {
         const double value = counts[code] == 0 ? ends.y : volume.codeBook.valueOf(Code(code));
         if (counts[code] != 0 && value >= ends.x && value <= ends.y)
@@ -74,12 +86,12 @@ bool mostAreNearZero(const Volume& volume, const glm::dvec2& ends) {
 
 // Whether values lie on both sides of 0, which stands for nothing: a map of z values, a difference.
 // A side that is less than a tenth of the other is no side: filters overshoot that far.
-bool divergesFromZero(const Volume& volume, const glm::dvec2& bulk) {
+bool divergesFromZero(const Volume& volume, const glm::dvec2& bulk, const Counts& counts) {
     constexpr double kLeastSide = 0.1;
     const double least = kLeastSide * std::max(-bulk.x, bulk.y);
     if (!(-bulk.x >= least && bulk.y >= least && bulk.x < 0 && bulk.y > 0)) return false;
     const std::optional<double> background = guessBackground(volume);
-    return background ? *background == 0 : mostAreNearZero(volume, bulk);
+    return background ? *background == 0 : mostAreNearZero(volume, bulk, counts);
 }
 
 // Clear at 0, the same blue and red as those of the preset coolwarm at the farther of two ends.
@@ -162,23 +174,18 @@ bool isHounsfield(const Volume& volume) {
 }
 
 glm::dvec2 bulkRange(const Volume& volume) {
-    const std::vector<std::uint64_t> counts = countsWithoutBackground(volume);
-    if (std::all_of(counts.begin(), counts.end(), [](std::uint64_t count) { return count == 0; }))
-        return {volume.background, volume.background + 1};
-    return {volume.codeBook.valueOf(percentileCode(counts, 1)),
-            volume.codeBook.valueOf(percentileCode(counts, 99))};
+    return bulkOf(volume, uncutHistogram(volume));
 }
 
 glm::dvec2 rampRange(const Volume& volume) {
-    glm::dvec2 range = bulkRange(volume);
-    if (isFog(volume) && volume.background < range.y) range.x = volume.background;
-    return range;
+    return rampOf(volume, uncutHistogram(volume));
 }
 
 TransferFunction defaultRamp(const Volume& volume) {
     const DefaultFloats floats;
-    const glm::dvec2 range = rampRange(volume);
-    if (!isFog(volume) && divergesFromZero(volume, range)) return divergingRamp(range);
+    const Counts counts = uncutHistogram(volume);
+    const glm::dvec2 range = rampOf(volume, counts);
+    if (!isFog(volume) && divergesFromZero(volume, range, counts)) return divergingRamp(range);
     return defaultRamp(volume, range);
 }
 
