@@ -27,8 +27,11 @@ namespace deltasplat {
 namespace {
 
 // Lines of sight along each side of a tile, of which what they read of eight slices stays in the
-// second-level cache.
-constexpr int kTileLines = 64;
+// second-level cache. Of largest and smallest values much is left out, and more of small tiles.
+int tileLines(Mode mode) {
+    return mode == Mode::kMip || mode == Mode::kMin ? 32 : 64;
+}
+
 constexpr int kSquare = 8;
 
 RayRule ruleOf(Mode mode) {
@@ -70,7 +73,7 @@ class RayPicture {
 
     // @param image  of the part
     void render(Image& image, const Listener& listener) const {
-        const int pixels = std::max(1, kTileLines / lines_.perSide());
+        const int pixels = std::max(1, tileLines(mode_) / lines_.perSide());
         const glm::ivec2 tiles = (image.size + pixels - 1) / pixels;
         const int count = tiles.x * tiles.y;
         std::atomic<int> next = 0;
@@ -209,8 +212,8 @@ void putTogether(const Image& found, glm::ivec2 first, Mode mode, Image& all) {
 }
 
 // Widens a part to the tiles that a picture of the volume alone has: bits are those of tiles.
-PixelBox wholeTiles(const PixelBox& part, const Volume& volume, const Camera& camera) {
-    const int pixels = std::max(1, kTileLines / linesPerSide(volume, camera));
+PixelBox wholeTiles(const PixelBox& part, const Volume& volume, const Camera& camera, Mode mode) {
+    const int pixels = std::max(1, tileLines(mode) / linesPerSide(volume, camera));
     return {part.min / pixels * pixels,
             glm::min((part.max + pixels - 1) / pixels * pixels, camera.sizePixels)};
 }
@@ -224,7 +227,7 @@ bool renderFar(const FarGroups& far, const RayTask& whole, const Listener& liste
         const FarGroups::Seen seen = far.seenBy(whole.camera, order[i]);
         if (seen.isNothing()) continue;
         const Volume volume = far.volume(order[i]);
-        const PixelBox part = wholeTiles(seen.part, volume, whole.camera);
+        const PixelBox part = wholeTiles(seen.part, volume, whole.camera, whole.options.mode);
         Image image = clearImage(part.size());
         const double count = double(order.size());
         renderTask({volume, whole.options, whole.camera, part, whole.whole, true},
