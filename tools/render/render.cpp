@@ -62,14 +62,13 @@ void warnOfUnusedJoin(const CLI::App& app, const RenderCommand& command, Progres
         display.warn("--join: has no effect with a tolerance");
 }
 
-// Whether holding values within a tolerance takes longer than it saves: where a voxel, or what it
-// is divided into, is seen in one pixel and looks as its value does. Who asks for a method has it.
+// Whether holding values within a tolerance takes longer than it saves: where voxels look as their
+// values do, however wide footprints are. Who asks for a method has it.
 bool toleranceDoesNotPay(const PictureOptions& picture) {
     const RenderOptions& render = picture.render;
     const bool isLit = picture.shading.asked() || picture.scatter.asked() ||
                        picture.medium.asked() || picture.surface.asked;
-    return render.mode == Mode::kComposite && render.method == Method::kAuto && !render.sigma &&
-           !isLit;
+    return render.mode == Mode::kComposite && render.method == Method::kAuto && !isLit;
 }
 
 void warnOfTolerance(const CLI::App& app, const RenderCommand& command, ProgressDisplay& display) {
@@ -78,7 +77,7 @@ void warnOfTolerance(const CLI::App& app, const RenderCommand& command, Progress
         if (isGiven(app, option) && app.get_option(option)->as<double>() > 0)
             display.warn(std::string(option) +
                          ": left out by --method auto, for holding values takes longer than it "
-                         "saves without --sigma; --method delta holds them");
+                         "saves; --method delta holds them");
     }
 }
 

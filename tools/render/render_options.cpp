@@ -353,7 +353,7 @@ void addSplattingOptions(CLI::App& app, PictureOptions& picture) {
     group.addValue("--tolerance", "T", options.tolerance.relative, relativeTolerance(),
                    withDefault("Stamp less: keep what a voxel was while it is within T times the\n"
                                "true one, 0 <= T < 1; how far the picture may be off is proved\n"
-                               "(render --method auto: only with --sigma, or what is lit)",
+                               "(render --method auto: only of what is lit)",
                                numberText(options.tolerance.relative)));
     group.addValue("--tolerance-value", "V", options.tolerance.value, number(0),
                    withDefault("The same within V data units, which bounds no picture",
