@@ -108,20 +108,26 @@ void Sweeps::addPoint(const glm::dvec3& placeIndex) {
 }
 
 // Enough pieces for every thread to have some work, but none so narrow that rows at its edges,
-// which belong to two, take much of it.
+// which belong to two, take much of it. What a plane needs of a narrow one may be much less.
 std::vector<Sweeps::Piece> Sweeps::pieces() const {
     constexpr std::size_t kPiecesPerThread = 4;
     constexpr std::int64_t kLeastRows = 16;
+    constexpr double kLargePlane = 1 << 26;  // bytes
+    constexpr double kMostStrips = 1024;
     const auto threads = std::size_t(threadCount());
     const auto wanted =
         threads == 1 ? 1 : (kPiecesPerThread * threads + lightCount_ - 1) / lightCount_;
     std::vector<Piece> pieces;
     for (std::size_t i = 0; i < sweeps_.size(); ++i) {
         const auto rows = std::visit([](const auto& sweep) { return sweep.rows(); }, sweeps_[i]);
-        const auto strips = std::clamp<std::int64_t>(std::int64_t(wanted), 1,
-                                                     std::max<std::int64_t>(1, rows / kLeastRows));
-        const auto edge = [&](std::int64_t n) { return rows * n / strips; };
         if (rows == 0) continue;
+        const double large =
+            std::visit([&](const auto& sweep) { return sweep.bytes(0, rows); }, sweeps_[i]) /
+            kLargePlane;
+        const auto most = std::max<std::int64_t>(1, rows / kLeastRows);
+        const auto strips = std::int64_t(
+            std::clamp(std::max(double(wanted), std::min(large, kMostStrips)), 1.0, double(most)));
+        const auto edge = [&](std::int64_t n) { return rows * n / strips; };
         for (std::int64_t n = 0; n < strips; ++n) pieces.push_back({i, edge(n), edge(n + 1)});
     }
     return pieces;
@@ -129,15 +135,16 @@ std::vector<Sweeps::Piece> Sweeps::pieces() const {
 
 void Sweeps::run(std::uint16_t* depths) const {
     const std::vector<Piece> all = pieces();
+    std::vector<double> bytes(all.size() + 1);
+    parallelFor(all.size(), [&](std::size_t i) {
+        const Piece& piece = all[i];
+        bytes[i] = std::visit([&](const auto& s) { return s.bytes(piece.first, piece.last); },
+                              sweeps_[piece.sweep]);
+    });
     // Each thread has a piece in hand.
-    double largest = 0;
-    for (const Piece& piece : all) {
-        largest = std::max(
-            largest, std::visit([&](const auto& s) { return s.bytes(piece.first, piece.last); },
-                                sweeps_[piece.sweep]));
-    }
     requireMemory("a plane that light is swept through",
-                  largest * std::min<double>(threadCount(), double(all.size())));
+                  *std::max_element(bytes.begin(), bytes.end()) *
+                      std::min<double>(threadCount(), double(all.size())));
     parallelFor(all.size(), [&](std::size_t i) {
         const Piece& piece = all[i];
         std::uint16_t* out = depths + 512 * blocks_.size() * lights_[piece.sweep];

@@ -9,7 +9,6 @@
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
-#include <utility>
 #include <vector>
 
 #include "ingest/codes/leaf_slices.h"
@@ -24,44 +23,6 @@ struct MetBlock {
     int end;  // of rows of the plane
     std::array<float, 64> own;
 };
-
-// Takes away what lies beyond the widest gap between blocks, where a plane of all is large; returns
-// nothing where it is not, or there is none.
-std::vector<PlaneReach> cutAtGap(std::vector<PlaneReach>& blocks) {
-    constexpr double kLargePlane = 1 << 20;
-    glm::i64vec2 least = blocks.front().least;
-    glm::i64vec2 most = blocks.front().most;
-    for (const PlaneReach& one : blocks) {
-        least = glm::min(least, one.least);
-        most = glm::max(most, one.most);
-    }
-    const glm::dvec2 size(most - least);
-    if (size.x * size.y <= kLargePlane) return {};
-    std::int64_t widest = 0;
-    std::int64_t end = 0;  // of what lies before the gap
-    int across = 0;
-    for (int axis = 0; axis < 2; ++axis) {
-        std::vector<std::pair<std::int64_t, std::int64_t>> ends;
-        for (const PlaneReach& one : blocks) ends.emplace_back(one.least[axis], one.most[axis]);
-        std::sort(ends.begin(), ends.end());
-        std::int64_t last = ends.front().second;
-        for (const auto& [first, lastOfOne] : ends) {
-            if (first - last - 1 > widest) {
-                widest = first - last - 1;
-                end = last;
-                across = axis;
-            }
-            last = std::max(last, lastOfOne);
-        }
-    }
-    if (widest == 0) return {};
-    const auto beyond =
-        std::stable_partition(blocks.begin(), blocks.end(),
-                              [&](const PlaneReach& one) { return one.most[across] <= end; });
-    std::vector<PlaneReach> behind(beyond, blocks.end());
-    blocks.erase(beyond, blocks.end());
-    return behind;
-}
 
 }  // namespace
 
@@ -94,17 +55,11 @@ LightSweep::LightSweep(const LitBlocks::Along& blocks, const LightWay& way, int 
 
 // Which part of the plane any voxel reads from or adds to.
 void LightSweep::findRows() {
-    const std::vector<PlaneReach> all = reaches();
-    glm::i64vec2 least = all.front().least;
-    glm::i64vec2 most = all.front().most;
-    for (const PlaneReach& one : all) {
-        least = glm::min(least, one.least);
-        most = glm::max(most, one.most);
-    }
-    firstRow_ = least.x;
-    lastRow_ = most.x;
-    firstColumn_ = least.y;
-    columns_ = most.y - least.y + 1;
+    const PlaneBox all = boxOf(reaches());
+    firstRow_ = all.least.x;
+    lastRow_ = all.most.x;
+    firstColumn_ = all.least.y;
+    columns_ = all.most.y - all.least.y + 1;
 }
 
 std::vector<PlaneReach> LightSweep::reaches() const {
@@ -115,27 +70,19 @@ std::vector<PlaneReach> LightSweep::reaches() const {
                                      glm::i64vec2(glm::floor(placeOf(group.firstSlice + 7)))};
         for (std::size_t i = group.begin; i < group.end; ++i) {
             const glm::i64vec2 first(blocks_.order[i].first);
-            all.push_back({group.firstSlice, blocks_.order[i], first + glm::min(ends[0], ends[1]),
-                           first + glm::max(ends[0], ends[1]) + std::int64_t{8}});
+            all.push_back({{first + glm::min(ends[0], ends[1]),
+                            first + glm::max(ends[0], ends[1]) + std::int64_t{8}},
+                           group.firstSlice,
+                           blocks_.order[i]});
         }
     }
     return all;
 }
 
 std::vector<LitBlocks::Along> LightSweep::apart() const {
+    constexpr double kSmallPlane = 1 << 20;
     std::vector<LitBlocks::Along> parts;
-    // Cut where there is a gap, as long as planes are large.
-    std::vector<std::vector<PlaneReach>> left;
-    left.push_back(reaches());
-    while (!left.empty()) {
-        std::vector<PlaneReach> some = std::move(left.back());
-        left.pop_back();
-        std::vector<PlaneReach> behind = cutAtGap(some);
-        if (!behind.empty()) {
-            left.push_back(std::move(some));
-            left.push_back(std::move(behind));
-            continue;
-        }
+    for (const std::vector<PlaneReach>& some : partsAtGaps(reaches(), kSmallPlane)) {
         LitBlocks::Along& part = parts.emplace_back();
         part.sliceAxis = blocks_.sliceAxis;
         part.classes = blocks_.classes;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "light/lit_blocks.h"
+#include "light/plane_parts.h"
 #include "light/sweep_kernels.h"
 
 namespace deltasplat {
@@ -23,13 +24,10 @@ struct LightWay {
     double sliceWorld;  ///< world units that it travels in a slice
 };
 
-/// What a block reads from or adds to of the plane that light is swept through: rows and columns,
-/// both ends inclusive.
-struct PlaneReach {
+/// What a block reads from or adds to of the plane that light is swept through.
+struct PlaneReach : PlaneBox {
     int slice;  ///< its first
     LitBlocks::Along::Place place;
-    glm::i64vec2 least;
-    glm::i64vec2 most;
 };
 
 /// What light comes through on its way to each voxel of a volume, slice by slice from where it

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "ingest/codes/leaf_slices.h"
+#include "light/plane_parts.h"
 #include "light/point_kernels.h"
-#include "memory.h"
 
 namespace deltasplat {
 namespace {
@@ -58,33 +58,17 @@ NodesOnBlock nodesOn(double first, double distance, double nodes, std::int64_t l
 // As many floats as a plane may have before what is not read of it is left out.
 constexpr double kLargePlane = 1 << 22;
 
-// Rows and columns of nodes, both ends inclusive.
-struct NodeBox {
-    glm::i64vec2 least;
-    glm::i64vec2 most;
-
-    bool empty() const { return most.x < least.x || most.y < least.y; }
-    double count() const {
-        return (double(most.x) - double(least.x) + 1) * (double(most.y) - double(least.y) + 1);
-    }
-    void add(const NodeBox& other) {
-        least = glm::min(least, other.least);
-        most = glm::max(most, other.most);
-    }
-};
-
 // What a block reads from or adds to.
-struct NodeReach {
+struct NodeReach : PlaneBox {
     std::size_t group;
     std::size_t place;
-    NodeBox nodes;
 };
 
 // Nodes that voxels of a block and those beside them lie between, and one more.
 // @param aside  of its first voxel
 // @param from   distance of its first slice, of which the light may be in the next
-NodeBox nodesOfBlock(const glm::dvec2& aside, double from, double nodes, const NodeBox& all) {
-    NodeBox box = all;
+PlaneBox nodesOfBlock(const glm::dvec2& aside, double from, double nodes, const PlaneBox& all) {
+    PlaneBox box = all;
     const double nearest = std::max(from, kHalf);
     const double farthest = nearest + 8;
     for (int axis = 0; axis < 2; ++axis) {
@@ -102,47 +86,6 @@ NodeBox nodesOfBlock(const glm::dvec2& aside, double from, double nodes, const N
     return box;
 }
 
-// Cuts what is reached at gaps, as long as there are any.
-std::vector<std::vector<NodeReach>> partsOf(std::vector<NodeReach> reaches) {
-    std::vector<std::vector<NodeReach>> parts;
-    std::vector<std::vector<NodeReach>> left;
-    if (!reaches.empty()) left.push_back(std::move(reaches));
-    while (!left.empty()) {
-        std::vector<NodeReach> some = std::move(left.back());
-        left.pop_back();
-        std::vector<NodeReach> beyond;
-        for (int axis = 0; axis < 2 && beyond.empty(); ++axis) {
-            std::vector<std::pair<std::int64_t, std::int64_t>> ends;
-            for (const NodeReach& one : some)
-                ends.emplace_back(one.nodes.least[axis], one.nodes.most[axis]);
-            std::sort(ends.begin(), ends.end());
-            std::int64_t widest = 0;
-            std::int64_t end = 0;
-            std::int64_t last = ends.front().second;
-            for (const auto& [first, lastOfOne] : ends) {
-                if (first - last - 1 > widest) {
-                    widest = first - last - 1;
-                    end = last;
-                }
-                last = std::max(last, lastOfOne);
-            }
-            if (widest == 0) continue;
-            const auto middle = std::stable_partition(
-                some.begin(), some.end(),
-                [&](const NodeReach& one) { return one.nodes.most[axis] <= end; });
-            beyond.assign(middle, some.end());
-            some.erase(middle, some.end());
-        }
-        if (beyond.empty()) {
-            parts.push_back(std::move(some));
-        } else {
-            left.push_back(std::move(some));
-            left.push_back(std::move(beyond));
-        }
-    }
-    return parts;
-}
-
 }  // namespace
 
 // Rows and columns from the light's own on, at the slice in hand.
@@ -152,23 +95,23 @@ struct PointSweep::Strip {
     std::int64_t lastRow;
     std::int64_t firstColumn;
     std::int64_t lastColumn;
-    std::uint16_t* depths;
-    std::vector<float> plane;  // [lastRow - firstRow + 1][columns()]
+    std::uint16_t* depths;     // none: nothing is swept, as the plane's size alone is wanted
+    std::vector<float> plane;  // [lastRow - firstRow + 1][columns()]; empty without depths
 
     std::size_t columns() const { return std::size_t(lastColumn - firstColumn + 1); }
+    PlaneBox box() const { return {{firstRow, firstColumn}, {lastRow, lastColumn}}; }
     void doubleNodes();
-    Strip partOf(const NodeBox& box) const;
+    Strip partOf(const PlaneBox& box) const;
 };
 
 // What is between two nodes is mixed of them, as it was.
 void PointSweep::Strip::doubleNodes() {
+    nodes *= 2;
     const std::size_t oldColumns = columns();
     const auto oldRows = std::size_t(lastRow - firstRow + 1);
     const std::vector<float> old = std::move(plane);
-    nodes *= 2;
     for (std::int64_t* edge : {&firstRow, &lastRow, &firstColumn, &lastColumn}) *edge *= 2;
-    const double count = double(2 * oldRows - 1) * double(columns());
-    if (count > kLargePlane) requireMemory("a plane that light is swept through", 4 * count);
+    if (!depths) return;
     plane.resize((2 * oldRows - 1) * columns());
     for (std::size_t row = 0; row < oldRows; ++row) {
         const float* in = &old[row * oldColumns];
@@ -185,9 +128,15 @@ void PointSweep::Strip::doubleNodes() {
     }
 }
 
-PointSweep::Strip PointSweep::Strip::partOf(const NodeBox& box) const {
+// Before there is a plane, light has come through nothing.
+PointSweep::Strip PointSweep::Strip::partOf(const PlaneBox& box) const {
     Strip part{nodes, box.least.x, box.most.x, box.least.y, box.most.y, depths, {}};
+    if (!depths) return part;
     part.plane.reserve(std::size_t(box.count()));
+    if (plane.empty()) {
+        part.plane.resize(std::size_t(box.count()));
+        return part;
+    }
     for (std::int64_t row = part.firstRow; row <= part.lastRow; ++row) {
         const float* first = &plane[std::size_t(row - firstRow) * columns() +
                                     std::size_t(part.firstColumn - firstColumn)];
@@ -262,42 +211,58 @@ void PointSweep::findRows() {
 }
 
 double PointSweep::bytes(std::int64_t first, std::int64_t last) const {
-    const auto& group = ahead_.groups.back();
-    const double times = nodesAt(distanceOf(group.firstSlice + (forward_ ? 7 : 0))) / nodes_;
-    const double nodes =
-        (double(last - first) * times + 1) * (double(lastColumn_ - firstColumn_) * times + 1);
-    // Twice while nodes are doubled, those before being a quarter. Larger ones are asked for when
-    // they come, for most of it is left out.
-    return 1.25 * double(sizeof(float)) * std::min(nodes, kLargePlane);
+    return double(sizeof(float)) * sweep(first, last, nullptr);
 }
 
 void PointSweep::run(std::int64_t first, std::int64_t last, std::uint16_t* depths) const {
-    Strip strip{nodes_, firstRow_ + first, firstRow_ + last, firstColumn_, lastColumn_, depths, {}};
-    strip.plane.resize(std::size_t(last - first + 1) * strip.columns());
-    sweepBlocks(ahead_, strip);
+    sweep(first, last, depths);
 }
 
-void PointSweep::sweepBlocks(const Blocks& blocks, Strip& strip) const {
+// Returns how many nodes planes have at a time, at most. Sweeps nothing without depths.
+double PointSweep::sweep(std::int64_t first, std::int64_t last, std::uint16_t* depths) const {
+    const Strip strip{
+        nodes_, firstRow_ + first, firstRow_ + last, firstColumn_, lastColumn_, depths, {}};
+    if (strip.box().count() > kLargePlane) {
+        if (const std::optional<double> most = sweepApart(ahead_, 0, strip)) return *most;
+    }
+    Strip whole = strip.partOf(strip.box());
+    return sweepBlocks(ahead_, whole);
+}
+
+double PointSweep::sweepBlocks(const Blocks& blocks, Strip& strip) const {
+    double most = strip.box().count();
+    const auto doubleNodes = [&] {
+        strip.doubleNodes();
+        // Those before are a quarter.
+        most = std::max(most, 1.25 * strip.box().count());
+    };
     for (std::size_t n = 0; n < blocks.groups.size(); ++n) {
         const auto& group = blocks.groups[n];
-        const double distance = distanceOf(group.firstSlice + (forward_ ? 0 : 7));
-        while (strip.nodes < distance) {
-            if (4 * double(strip.plane.size()) > kLargePlane && sweepApart(blocks, n, strip))
-                return;
-            strip.doubleNodes();
+        const auto sliceOf = [&](int i) { return group.firstSlice + (forward_ ? i : 7 - i); };
+        while (strip.nodes < distanceOf(sliceOf(7))) {
+            const double nodes = strip.box().count();
+            if (4 * nodes > kLargePlane) {
+                const std::optional<double> ofParts = sweepApart(blocks, n, strip);
+                if (ofParts) return std::max(most, nodes + *ofParts);
+            }
+            if (strip.nodes >= distanceOf(sliceOf(0))) break;
+            doubleNodes();
         }
-        for (int i = 0; i < 8; ++i)
-            sweepSlice(blocks, group, group.firstSlice + (forward_ ? i : 7 - i), strip);
+        for (int i = 0; i < 8; ++i) {
+            const int slice = sliceOf(i);
+            while (strip.nodes < distanceOf(slice)) doubleNodes();
+            if (strip.depths) sweepSlice(blocks, group, slice, strip);
+        }
     }
+    return most;
 }
 
-// Sweeps blocks from a group on by parts of the plane, where these are smaller than it is.
-bool PointSweep::sweepApart(const Blocks& blocks, std::size_t group, Strip& strip) const {
-    struct Part {
-        NodeBox nodes;
-        Blocks blocks;
-    };
-    const NodeBox whole{{strip.firstRow, strip.firstColumn}, {strip.lastRow, strip.lastColumn}};
+// Sweeps blocks from a group on by parts of the plane, where these are smaller than it is; returns
+// how many nodes planes of one have, at most.
+std::optional<double> PointSweep::sweepApart(const Blocks& blocks, std::size_t group,
+                                             const Strip& strip) const {
+    constexpr double kSmallPart = 1 << 10;
+    const PlaneBox whole = strip.box();
     std::vector<NodeReach> reaches;
     for (std::size_t n = group; n < blocks.groups.size(); ++n) {
         const auto& one = blocks.groups[n];
@@ -305,21 +270,16 @@ bool PointSweep::sweepApart(const Blocks& blocks, std::size_t group, Strip& stri
         for (std::size_t i = one.begin; i < one.end; ++i) {
             const glm::dvec2 aside =
                 glm::dvec2(blocks.places[i].first) - glm::dvec2(light_.place.y, light_.place.z);
-            const NodeBox nodes = nodesOfBlock(aside, from, strip.nodes, whole);
-            if (!nodes.empty()) reaches.push_back({n, i, nodes});
+            const PlaneBox nodes = nodesOfBlock(aside, from, strip.nodes, whole);
+            if (!nodes.empty()) reaches.push_back({nodes, n, i});
         }
     }
-    const std::vector<std::vector<NodeReach>> parts = partsOf(std::move(reaches));
-    const auto boxOf = [](const std::vector<NodeReach>& part) {
-        NodeBox box = part.front().nodes;
-        for (const NodeReach& one : part) box.add(one.nodes);
-        return box;
-    };
+    const std::vector<std::vector<NodeReach>> parts = partsAtGaps(std::move(reaches), kSmallPart);
     double nodes = 0;
     for (const auto& part : parts) nodes += boxOf(part).count();
-    if (2 * nodes > whole.count()) return false;
+    if (2 * nodes > whole.count()) return std::nullopt;
+    double most = 0;
     for (const auto& part : parts) {
-        const NodeBox box = boxOf(part);
         Blocks some;
         for (const NodeReach& one : part) {
             const int slice = blocks.groups[one.group].firstSlice;
@@ -328,10 +288,10 @@ bool PointSweep::sweepApart(const Blocks& blocks, std::size_t group, Strip& stri
             some.places.push_back(blocks.places[one.place]);
             some.groups.back().end = some.places.size();
         }
-        Strip ofPart = strip.partOf(box);
-        sweepBlocks(some, ofPart);
+        Strip ofPart = strip.partOf(boxOf(part));
+        most = std::max(most, sweepBlocks(some, ofPart));
     }
-    return true;
+    return most;
 }
 
 // All voxels of the slice are read before any are added.
@@ -341,7 +301,6 @@ void PointSweep::sweepSlice(const Blocks& blocks, const LitBlocks::Along::Group&
     // Of the slice that the light is in, what lies before it.
     const double share = std::min(distance + kHalf, 1.0);
     if (share <= 0) return;
-    while (strip.nodes < distance) strip.doubleNodes();
     const glm::ivec3 stride = toSliceOrder(kLeafStride, blocks_.sliceAxis);
     const auto sliceInBlock = std::size_t(slice - group.firstSlice);
     if (distance >= 0) {

@@ -5,6 +5,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 #include "light/lit_blocks.h"
@@ -25,8 +26,8 @@ struct PointPlace {
 /// does, on a plane that grows with the distance: a node of it stands for a way from the light, and
 /// adds up what this way meets. From slices to those twice as far the nodes are doubled both ways,
 /// so that voxels never lie closer than they do. What is between two nodes is so far mixed of them
-/// anyway, so that this blurs nothing. Where planes would get large, what no voxel behind reads is
-/// left out, and what lies far apart is swept by itself from there on.
+/// anyway, so that this blurs nothing. Where planes are or would get large, what no voxel behind
+/// reads is left out, and what lies far apart is swept by itself from there on.
 class PointSweep {
   public:
     /// @param blocks   along the slice axis; must outlive this
@@ -57,8 +58,10 @@ class PointSweep {
         std::vector<LitBlocks::Along::Group> groups;  // of places
         std::vector<LitBlocks::Along::Place> places;
     };
-    void sweepBlocks(const Blocks& blocks, Strip& strip) const;
-    bool sweepApart(const Blocks& blocks, std::size_t group, Strip& strip) const;
+    double sweep(std::int64_t first, std::int64_t last, std::uint16_t* depths) const;
+    double sweepBlocks(const Blocks& blocks, Strip& strip) const;
+    std::optional<double> sweepApart(const Blocks& blocks, std::size_t group,
+                                     const Strip& strip) const;
     void sweepSlice(const Blocks& blocks, const LitBlocks::Along::Group& group, int slice,
                     Strip& strip) const;
     void read(const LitBlocks::Along::Place& block, double distance, const Strip& strip,

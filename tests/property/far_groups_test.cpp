@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <glm/geometric.hpp>
 #include <memory>
 #include <random>
 #include <string>
@@ -190,6 +191,35 @@ TEST(FarGroups, areLit) {
     options.optics.scattering->lights.resize(1);
     options.camera = closeUps(place)[2];
     EXPECT_EQ(render(both, options).image.rgba, render(alone, options).image.rgba);
+}
+
+// By a lamp as far from all as they are from each other: on planes of what is there alone.
+TEST(FarGroups, areLitFromFarAway) {
+    const Limit limit(kLimit);
+    const glm::ivec3 place(50000, 3, -50000);
+    RenderOptions options = someOptions();
+    options.optics.scattering.emplace();
+    options.optics.scattering->ambient = glm::dvec3(0);
+    options.optics.scattering->lights = {{LightFrame::kWorld, {0, -1, 0}, {1e6, 8e5, 3e5}, 1e5}};
+    Light& lamp = options.optics.scattering->lights.front();
+    lamp.positionWorld = glm::dvec3(25000, 60000, -25000);
+    options.camera = closeUps(place)[2];
+    const Image picture = render(blobsAt({{2, 5, -3}, place}), options).image;
+    const Image alone = render(blobsAt({place}), options).image;
+    // As the same light from one direction shows it.
+    const glm::dvec3 way = glm::dvec3(place) + 5.0 - *lamp.positionWorld;
+    lamp.direction = way;
+    lamp.strength /= glm::dot(way, way);
+    lamp.positionWorld.reset();
+    const Image expected = render(blobsAt({place}), options).image;
+    float most = 0;
+    for (std::size_t i = 0; i < expected.rgba.size(); ++i) {
+        // The unit that colours are rounded to goes by all of them.
+        EXPECT_NEAR(picture.rgba[i], alone.rgba[i], 1e-3f * alone.rgba[i] + 1e-5f);
+        EXPECT_NEAR(picture.rgba[i], expected.rgba[i], 0.08f * expected.rgba[i] + 0.01f);
+        if (i % 4 == 0) most = std::max(most, expected.rgba[i]);
+    }
+    EXPECT_GT(most, 0.5f);
 }
 
 // One that is in front of another one dims it, however far that is.

@@ -50,7 +50,8 @@ done
     --view front --size 48x48 --range 0,1 --crop :100,:,: "${limit[@]}"
 idiff -fail 0.00003 -failpercent 0 -warn 1 near.exr cropped.exr >/dev/null
 for options in "--sky 0.6,0.8,0.9:3" "--surface --isovalue 0.25" "--aov depth,position" "--deep" \
-    "--color-by x" "--shade" "--mode xray" "--mode mip --depth-shade 0.5" "--lighting scatter --light point:20,20,20:1e4"; do
+    "--color-by x" "--shade" "--mode xray" "--mode mip --depth-shade 0.5" "--lighting scatter --light point:20,20,20:1e4" \
+    "--lighting scatter --light point:5e8,1e9,5e8:1e6"; do
     # shellcheck disable=SC2086
     "$program" render far.vdb -o some.exr --target 3.5,3.5,3.5 --frame-width 12 --view iso \
         --size 48x48 --range 0,1 $options "${limit[@]}"
