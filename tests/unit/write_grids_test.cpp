@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // What volumes become in a .vdb, read back by OpenVDB alone.
 #include <gtest/gtest.h>
+#include <openvdb/io/Stream.h>
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/delta/delta_file.h"
+#include "deltasplat/ingest/list_grids.h"
 #include "ingest/grids/tree_types.h"
 #include "length_unit.h"
 #include "unit/convert_helpers.h"
@@ -302,6 +306,92 @@ TEST(WriteGrids, SeveralGridsInOneFile) {
         const auto typed = openvdb::gridPtrCast<openvdb::FloatGrid>(grids[i]);
         EXPECT_EQ(typed->tree().getValue(Coord(1, 2, 3)), values[i]);
     }
+}
+
+using Named = std::vector<std::pair<std::string, float>>;
+
+// Names and values of one voxel each, by OpenVDB alone.
+Named namedIn(const std::filesystem::path& file) {
+    Named all;
+    for (const openvdb::GridBase::Ptr& grid : readGrids(file)) {
+        const auto typed = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
+        all.emplace_back(grid->getName(), typed->tree().getValue(Coord(1, 2, 3)));
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+// What `gridName` finds under each name that is listed, in file order.
+std::vector<Volume> byName(const std::filesystem::path& file) {
+    std::vector<Volume> volumes;
+    for (const std::string& name : listGrids(file).scalar) {
+        ReadOptions options;
+        options.gridName = name;
+        options.keepSource = true;
+        volumes.push_back(readVolume(file, options));
+        EXPECT_EQ(volumes.back().name, name);
+    }
+    return volumes;
+}
+
+// Checks the names in a file, and those of what is converted, and restored from deltas.
+void expectNames(const std::filesystem::path& file, const std::vector<std::string>& shown,
+                 Named stored) {
+    std::sort(stored.begin(), stored.end());
+    DeltaFile deltas;
+    const std::vector<Volume> volumes = byName(file);
+    for (std::size_t i = 0; i < volumes.size(); ++i) {
+        EXPECT_EQ(volumes[i].valueMax, i + 1);
+        deltas.add(volumes[i], {});
+    }
+    deltas.write("delta.vdb");
+    writeVolumes("converted.vdb", volumes);
+    writeVolumes("restored.vdb", byName("delta.vdb"));
+    for (const auto& one : {file, {"delta.vdb"}, {"converted.vdb"}, {"restored.vdb"}})
+        EXPECT_EQ(listGrids(one).scalar, shown) << one;
+    for (const auto& one : {file, {"converted.vdb"}, {"restored.vdb"}})
+        EXPECT_EQ(namedIn(one), stored) << one;
+}
+
+TEST(WriteGrids, NamesComeBack) {
+    const TempFolder folder;
+    const auto expectKept = [&](const std::vector<std::string>& names,
+                                const std::vector<std::string>& shown) {
+        openvdb::GridCPtrVec grids;
+        Named stored;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            stored.emplace_back(names[i], float(i + 1));
+            grids.push_back(oneVoxel(names[i], float(i + 1)));
+        }
+        writeGrids("in.vdb", grids);
+        expectNames("in.vdb", shown, stored);
+    };
+    expectKept({""}, {""});
+    expectKept({"density", "", "a/b"}, {"density", "", "a/b"});
+    expectKept({"d", "x", "d"}, {"d[0]", "x", "d[1]"});
+    expectKept({"", ""}, {"[0]", "[1]"});
+    expectKept({"[0]", ""}, {"[0]", ""});
+    expectKept({"[0]", "", ""}, {"[0]", "[1]", "[2]"});
+    expectKept({"a", "a[0]", "a"}, {"a[1]", "a[0]", "a[2]"});
+    expectKept({"a[12]", "a", "a[", "]"}, {"a[12]", "a", "a[", "]"});
+}
+
+// Some writers store it as it is.
+TEST(WriteGrids, NamesThatNobodyNumberedComeBack) {
+    const TempFolder folder;
+    std::ofstream out("in.vdb", std::ios::binary);
+    openvdb::io::Stream(out).write(
+        {openvdb::GridCPtrVec{oneVoxel("density", 1), oneVoxel("", 2), oneVoxel("x", 3)}});
+    out.close();
+    std::string bytes = readBytes("in.vdb");
+    const std::string numbered(
+        "\2\0\0\0\x1e"
+        "0",
+        6);
+    const std::size_t at = bytes.find(numbered);
+    ASSERT_NE(at, std::string::npos);
+    writeBytes("in.vdb", bytes.replace(at, numbered.size(), 4, '\0'));
+    expectNames("in.vdb", {"density", "", "x"}, {{"density", 1}, {"", 2}, {"x", 3}});
 }
 
 TEST(WriteGrids, TheSameBytes) {

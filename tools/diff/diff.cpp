@@ -52,17 +52,6 @@ std::vector<std::string> without(const std::vector<std::string>& names,
     return rest;
 }
 
-// Grids are told apart by their names alone.
-void requireNames(const std::filesystem::path& file, const std::vector<std::string>& names) {
-    std::set<std::string> known;
-    for (const std::string& name : names) {
-        if (known.insert(name).second) continue;
-        throw Error(ErrorCode::kInput,
-                    gotExpected(file.string(), "several grids named \"" + name + "\"",
-                                "grids that each have a name of their own (or --grid NAME)"));
-    }
-}
-
 // Notes the scalar grids of a .vdb that stand beside the one compared.
 void noteOthers(const std::filesystem::path& file, std::vector<std::string>& onlyHere,
                 std::vector<std::string>& notCompared) {
@@ -87,8 +76,6 @@ std::vector<GridPair> pairGrids(const DiffOptions& options, FileDiff& diff) {
     // Without a choice, names do not matter; without any grid, reading says so.
     if (a.scalar.size() == 1 && b.scalar.size() == 1) return {{a.scalar[0], b.scalar[0]}};
     if (a.scalar.empty() || b.scalar.empty()) return {{}};
-    requireNames(options.a, a.scalar);
-    requireNames(options.b, b.scalar);
     diff.onlyInA = without(a.scalar, b.scalar);
     diff.onlyInB = without(b.scalar, a.scalar);
     std::vector<GridPair> pairs;

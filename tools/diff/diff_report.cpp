@@ -72,6 +72,10 @@ VolumeComparison worstOf(const std::vector<VolumeComparison>& comparisons) {
     return worst;
 }
 
+std::string shownName(const std::string& grid) {
+    return grid.empty() ? "\"\"" : grid;
+}
+
 std::string agreement(const std::string& a, const std::string& b) {
     return a == b ? a : "A has " + a + ", B has " + b;
 }
@@ -139,7 +143,7 @@ std::string maxText(const GridDiff& grid) {
 
 std::string plainText(const GridDiff& grid, const CompareOptions& thresholds) {
     const VolumeComparison& c = grid.comparison;
-    std::string text = textLine("grid", agreement(grid.a.name, grid.b.name));
+    std::string text = textLine("grid", agreement(shownName(grid.a.name), shownName(grid.b.name)));
     const bool isApart = c.shift != 0 || c.offset != glm::ivec3(0);
     text += textLine("transform", placeText(c) + (isApart ? assumedText(grid) : ""));
     text += textLine("type", agreement(grid.a.type, grid.b.type));
@@ -237,8 +241,8 @@ std::string plainText(const FileDiff& diff, const DiffOptions& options) {
     std::string text =
         "Comparing \"" + options.a.string() + "\" and \"" + options.b.string() + "\"\n";
     for (const GridDiff& grid : diff.grids) text += plainText(grid, options.compare);
-    for (const std::string& name : diff.onlyInA) text += textLine("only in A", name);
-    for (const std::string& name : diff.onlyInB) text += textLine("only in B", name);
+    for (const std::string& name : diff.onlyInA) text += textLine("only in A", shownName(name));
+    for (const std::string& name : diff.onlyInB) text += textLine("only in B", shownName(name));
     for (const std::string& name : diff.notCompared) text += textLine("not compared", name);
     return text + nameOf(diff.verdict()) + "\n";
 }

@@ -66,16 +66,18 @@ void requireScalar(const std::string& file, const VdbGrid& grid, const std::stri
 }
 
 const VdbGrid* findByName(const std::vector<VdbGrid>& grids, const std::string& name) {
-    const VdbGrid* found = nullptr;
-    for (const VdbGrid& grid : grids) {
-        if (grid.name == name || (found == nullptr && grid.plainName() == name)) found = &grid;
-        if (grid.name == name) break;
-    }
-    return found;
+    const auto find = [&](const auto& nameOf) {
+        return std::find_if(grids.begin(), grids.end(),
+                            [&](const VdbGrid& grid) { return nameOf(grid) == name; });
+    };
+    auto found = find([](const VdbGrid& grid) { return grid.name; });
+    if (found == grids.end()) found = find([](const auto& grid) { return grid.numberedName(); });
+    if (found == grids.end()) found = find([](const auto& grid) { return grid.plainName(); });
+    return found == grids.end() ? nullptr : &*found;
 }
 
-// Finds "density[1]" by its unique name, "density" as the first of that name, and "Cd.x" as a part
-// of a vector grid.
+// Finds "density[1]" by its unique name or as OpenVDB shows it, "density" as the first of that
+// name, and "Cd.x" as a part of a vector grid.
 ChosenGrid findGrid(const std::string& file, const std::vector<VdbGrid>& grids,
                     const std::string& name) {
     const VdbGrid* found = findByName(grids, name);

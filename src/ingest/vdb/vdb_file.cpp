@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <new>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -75,19 +76,10 @@ void parseType(const std::string& stored, VdbGrid& grid) {
                               [&](std::string_view begin) { return type.starts_with(begin); });
 }
 
-// What tells grids of one name apart stands behind this in the unique one.
-constexpr char kNameEnd = '\x1e';
-
-std::string nameOf(const std::string& uniqueName) {
-    const std::size_t end = uniqueName.find(kNameEnd);
-    if (end == std::string::npos) return uniqueName;
-    return uniqueName.substr(0, end) + "[" + uniqueName.substr(end + 1) + "]";
-}
-
 VdbGrid readDescriptor(VdbBytes& bytes, bool hasOffsets) {
     VdbGrid grid;
     grid.uniqueName = bytes.text();
-    grid.name = printable(nameOf(grid.uniqueName));
+    grid.name = grid.numberedName();
     parseType(printable(bytes.text()), grid);
     grid.parentName = bytes.text();
     const auto gridStart = std::uint64_t(bytes.i64());
@@ -238,6 +230,19 @@ bool VdbGrid::isScalar() const {
     return false;
 }
 
+// What tells grids of one name apart stands behind this in the unique one.
+constexpr char kNameEnd = '\x1e';
+
+std::string VdbGrid::plainName() const {
+    return uniqueName.substr(0, uniqueName.find(kNameEnd));
+}
+
+std::string VdbGrid::numberedName() const {
+    const std::string plain = plainName();
+    if (plain.size() == uniqueName.size()) return printable(plain);
+    return printable(plain + "[" + uniqueName.substr(plain.size() + 1) + "]");
+}
+
 std::string VdbGrid::valueType() const {
     return half && (type == "float" || type == "double") ? kHalfType : type;
 }
@@ -269,7 +274,36 @@ void VdbFile::readDirectory() {
         bytes.seek(grid.end);
         grids_.push_back(std::move(grid));
     }
+    nameGrids();
     findOwners();
+}
+
+// OpenVDB numbers grids of one name, and those without a name even where there is but one. Not
+// every writer does, and another may be named "density[0]": then all of a name are numbered anew.
+void VdbFile::nameGrids() {
+    std::map<std::string, std::vector<VdbGrid*>> named;
+    for (VdbGrid& grid : grids_) named[grid.plainName()].push_back(&grid);
+    std::set<std::string> taken;
+    for (const bool isAlone : {true, false}) {
+        for (const auto& [plain, grids] : named) {
+            if ((grids.size() == 1) != isAlone) continue;
+            std::set<std::string> own;
+            for (VdbGrid* const grid : grids) {
+                if (isAlone) grid->name = printable(plain);
+                const bool isNumbered = plain != grid->uniqueName;
+                if ((isAlone || isNumbered) && !taken.contains(grid->name)) own.insert(grid->name);
+            }
+            const bool areTold = own.size() == grids.size();
+            std::size_t number = 0;
+            for (VdbGrid* const grid : grids) {
+                while (!areTold) {
+                    grid->name = printable(plain) + "[" + std::to_string(number++) + "]";
+                    if (!taken.contains(grid->name)) break;
+                }
+                taken.insert(grid->name);
+            }
+        }
+    }
 }
 
 VdbMetadata VdbFile::metadata(const VdbGrid& grid) const {

@@ -43,7 +43,9 @@ struct VdbGrid {
         return (name.empty() ? "\"\"" : name) + " (" + valueType() + ")";
     }
     /// Returns the name without what tells grids of one name apart.
-    std::string plainName() const { return uniqueName.substr(0, uniqueName.find('\x1e')); }
+    std::string plainName() const;
+    /// Returns the name as OpenVDB shows it: "density[1]" even where there is no other.
+    std::string numberedName() const;
 };
 
 /// A grid of numbers whose leaves are still packed.
@@ -118,6 +120,7 @@ class VdbFile {
     std::optional<Found> find(const VdbGrid& grid, Find how, const Listener& listener) const;
     void readDirectory();
     void findEnd(VdbBytes& bytes, VdbGrid& grid) const;
+    void nameGrids();
     void findOwners();
     const VdbGrid& ownerOf(const VdbGrid& grid) const;
 
