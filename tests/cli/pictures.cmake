@@ -51,6 +51,7 @@ deltasplat_script_test(few_threads few_threads.sh ARGS ${tool} ${DELTASPLAT_FIXT
 deltasplat_script_test(unnamed_grid unnamed_grid.sh
     ARGS ${tool} ${DELTASPLAT_FIXTURES}/unnamed.vdb ${scratch}/unnamed_grid)
 set_tests_properties(cli.few_threads PROPERTIES SKIP_RETURN_CODE 77 FIXTURES_REQUIRED cli_files)
+set_tests_properties(cli.unnamed_grid PROPERTIES FIXTURES_REQUIRED cli_files)
 deltasplat_script_test(inputs_kept inputs_kept.sh
     ARGS ${tool} ${scratch}/inputs_kept $<BOOL:${DELTASPLAT_DICOM}>)
 deltasplat_script_test(full_disk.deep full_disk.sh
