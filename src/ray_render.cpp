@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
@@ -80,7 +82,7 @@ class RayPicture {
         std::atomic<int> done = 0;
         SharedProgress progress(listener);
         parallelFor(std::size_t(std::min(threadCount(), count)), [&](std::size_t) {
-            Tile tile{RayFollower(rays_, ruleOf(mode_)), {}, {}, {}, {}};
+            Tile tile{RayFollower(rays_, ruleOf(mode_)), {}, {}, {}, {}, {}};
             for (int i = next++; i < count; i = next++) {
                 const glm::ivec2 first = pixels * glm::ivec2(i % tiles.x, i / tiles.x);
                 paintTile(first, glm::min(first + pixels, image.size), tile, image);
@@ -90,29 +92,63 @@ class RayPicture {
     }
 
   private:
+    // What the lines of sight of a pixel find.
+    struct PixelSum {
+        double value = 0, shade = 0, weight = 0;
+        std::int64_t met = 0;
+    };
+
     struct Tile {
         RayFollower follower;
-        std::vector<std::size_t> places;  // of lines, row by row, in what follows
+        std::vector<glm::ivec2> places;  // of lines
         std::vector<PictureLine> lines;
         std::vector<SightRay> rays;
         std::vector<RayFound> found;
+        std::vector<PixelSum> sums;  // row by row
     };
 
     void paintTile(glm::ivec2 first, glm::ivec2 last, Tile& tile, Image& image) const {
         const int n = lines_.perSide();
-        const glm::ivec2 from = n * (part_.min + first);
-        const glm::ivec2 to = n * (part_.min + last);
-        const int width = to.x - from.x;
+        const glm::ivec2 pixels = last - first;
+        tile.sums.assign(std::size_t(pixels.x) * std::size_t(pixels.y), {});
+        const glm::ivec2 from = n * (part_.min + first), to = n * (part_.min + last);
+        const PixelBox seen{glm::max(from, lines_.seen().min), glm::min(to, lines_.seen().max)};
+        // A pixel of many lines is looked at part by part.
+        for (int top = from.y + (seen.min.y - from.y) / kTileLines * kTileLines; top < seen.max.y;
+             top += kTileLines) {
+            for (int left = from.x + (seen.min.x - from.x) / kTileLines * kTileLines;
+                 left < seen.max.x; left += kTileLines) {
+                const glm::ivec2 begin(left, top);
+                follow({glm::max(begin, seen.min), glm::min(begin + kTileLines, seen.max)}, begin,
+                       tile);
+                for (std::size_t i = 0; i < tile.lines.size(); ++i) {
+                    const glm::ivec2 pixel = (tile.places[i] - from) / n;
+                    addTo(tile.sums[std::size_t(pixel.y * pixels.x + pixel.x)], tile.found[i],
+                          tile.lines[i]);
+                }
+            }
+        }
+        for (int y = first.y; y < last.y; ++y) {
+            for (int x = first.x; x < last.x; ++x) {
+                const glm::ivec2 at = glm::ivec2(x, y) - first;
+                paint(tile.sums[std::size_t(at.y * pixels.x + at.x)], image.pixel(x, y));
+            }
+        }
+    }
+
+    // Square by square: lines that are followed together lie close to each other.
+    // @param begin  where squares begin
+    void follow(const PixelBox& wanted, glm::ivec2 begin, Tile& tile) const {
+        tile.places.clear();
         tile.lines.clear();
         tile.rays.clear();
-        tile.places.resize(std::size_t(width) * std::size_t(to.y - from.y));
-        // Square by square: lines that are followed together lie close to each other.
-        for (int top = from.y; top < to.y; top += kSquare) {
-            for (int left = from.x; left < to.x; left += kSquare) {
-                for (int y = top; y < std::min(top + kSquare, to.y); ++y) {
-                    for (int x = left; x < std::min(left + kSquare, to.x); ++x) {
-                        tile.places[std::size_t((y - from.y) * width + x - from.x)] =
-                            tile.lines.size();
+        for (int top = begin.y; top < wanted.max.y; top += kSquare) {
+            for (int left = begin.x; left < wanted.max.x; left += kSquare) {
+                const glm::ivec2 low = glm::max(wanted.min, glm::ivec2(left, top));
+                const glm::ivec2 high = glm::min(wanted.max, glm::ivec2(left, top) + kSquare);
+                for (int y = low.y; y < high.y; ++y) {
+                    for (int x = low.x; x < high.x; ++x) {
+                        tile.places.emplace_back(x, y);
                         tile.lines.push_back(lines_.at(x, y));
                         tile.rays.push_back(tile.lines.back().ray);
                     }
@@ -121,35 +157,25 @@ class RayPicture {
         }
         tile.found.resize(tile.rays.size());
         tile.follower.follow(tile.rays, tile.found);
-        for (int y = first.y; y < last.y; ++y) {
-            for (int x = first.x; x < last.x; ++x)
-                paint(tile, std::size_t(n) * std::size_t((y - first.y) * width + x - first.x),
-                      width, image.pixel(x, y));
-        }
+    }
+
+    void addTo(PixelSum& sum, const RayFound& found, const PictureLine& line) const {
+        if (!found.isMet) return;
+        sum.value += found.value * (showsSums(mode_) ? line.lengthWorld : 1);
+        sum.shade += mode_ == Mode::kMip ? shade_.at(line.depthAt(found.slice)) : 1;
+        sum.weight += found.weight;
+        ++sum.met;
     }
 
     // The mean of what a pixel's lines of sight find.
-    void paint(const Tile& tile, std::size_t at, int width, float* rgba) const {
-        const int n = lines_.perSide();
-        double value = 0;
-        double shade = 0;
-        double weight = 0;
-        int met = 0;
-        for (int j = 0; j < n; ++j, at += std::size_t(width)) {
-            for (std::size_t i = at; i < at + std::size_t(n); ++i) {
-                const RayFound& found = tile.found[tile.places[i]];
-                const PictureLine& line = tile.lines[tile.places[i]];
-                if (!found.isMet) continue;
-                value += found.value * (showsSums(mode_) ? line.lengthWorld : 1);
-                shade += mode_ == Mode::kMip ? shade_.at(line.depthAt(found.slice)) : 1;
-                weight += found.weight;
-                ++met;
-            }
-        }
+    void paint(const PixelSum& sum, float* rgba) const {
+        const double all = double(lines_.perSide()) * lines_.perSide();
+        const auto met = double(sum.met);
         if (showsSums(mode_)) {
-            std::fill_n(rgba, 4, float(value / (n * n)));
-        } else if (2 * met >= n * n) {
-            painter_.paint({float(value / met), float(shade / met), true, float(weight)}, rgba);
+            std::fill_n(rgba, 4, float(sum.value / all));
+        } else if (2 * met >= all) {
+            painter_.paint(
+                {float(sum.value / met), float(sum.shade / met), true, float(sum.weight)}, rgba);
         }
     }
 
@@ -225,7 +251,7 @@ bool renderFar(const FarGroups& far, const RayTask& whole, const Listener& liste
     const std::vector<std::size_t> order = far.frontToBack(whole.camera);
     for (std::size_t i = 0; i < order.size(); ++i) {
         const FarGroups::Seen seen = far.seenBy(whole.camera, order[i]);
-        if (seen.isNothing()) continue;
+        if (showsSums(whole.options.mode) ? seen.part.empty() : seen.isNothing()) continue;
         const Volume volume = far.volume(order[i]);
         const PixelBox part = wholeTiles(seen.part, volume, whole.camera, whole.options.mode);
         Image image = clearImage(part.size());

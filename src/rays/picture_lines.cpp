@@ -7,9 +7,13 @@
 #include <glm/matrix.hpp>
 
 #include "deltasplat/view/factorization.h"
+#include "view/seen_box.h"
 
 namespace deltasplat {
 namespace {
+
+// What values between voxels reach.
+constexpr double kReach = 1;
 
 Camera refined(Camera camera, int perSide) {
     camera.sizePixels *= perSide;
@@ -26,15 +30,25 @@ double pixelsPerVoxel(const Volume& volume, const Camera& camera) {
 
 int linesPerSide(const Volume& volume, const Camera& camera) {
     const double pixels = pixelsPerVoxel(volume, camera);
-    if (!(pixels > 0)) return kMostPerSide;
+    const glm::dvec2 size(camera.sizePixels);
+    // From an eye each row and column is held.
+    const double kMostAcross = camera.projection == Projection::kOrtho ? 0x1p30 : 0x1p18;
+    const double most =
+        std::max(std::floor(kMostAcross / std::max(size.x, size.y)), double(kLeastPerSide));
     // Less than a tenth of a voxel too few does not matter.
-    return int(std::clamp(std::ceil(1 / pixels - 0.1), 1.0, double(kMostPerSide)));
+    const double wanted = pixels > 0 ? std::clamp(std::ceil(1 / pixels - 0.1), 1.0, most) : most;
+    if (wanted <= kLeastPerSide) return int(wanted);
+    const SeenBox seen = seenBox(volume.box, volume.worldFromIndex, camera, kReach);
+    const double shown = std::min(seen.size.x, size.x) * std::min(seen.size.y, size.y);
+    const double affordable = std::sqrt(kMostLines / std::max(shown, 0x1p-60));
+    return int(std::min(wanted, std::max(std::floor(affordable), double(kLeastPerSide))));
 }
 
 PictureLines::PictureLines(const Volume& volume, const Camera& camera, int perSide)
     : camera_(camera), perSide_(perSide), box_(volume.box), linear_(volume.worldFromIndex) {
     const glm::dmat3 fromWorld = glm::inverse(linear_);
     const Camera fine = refined(camera, perSide);
+    seen_ = seenBox(volume.box, volume.worldFromIndex, fine, kReach).part;
     const glm::dvec3 first(volume.worldFromIndex * glm::dvec4(volume.box.min, 1));
     if (camera.projection != Projection::kOrtho) {
         rays_.emplace(fine, fromWorld);

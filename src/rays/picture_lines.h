@@ -4,6 +4,7 @@
 #include <glm/mat3x3.hpp>
 #include <optional>
 
+#include "deltasplat/image/pixel_box.h"
 #include "rays/sight_ray.h"
 #include "view/picture_rays.h"
 
@@ -30,12 +31,15 @@ class PictureLines {
     int perSide() const { return perSide_; }
     /// Counted from the picture's top left corner, perSide() to a pixel each way.
     PictureLine at(int x, int y) const;
+    /// Lines that may meet the volume, counted likewise.
+    const PixelBox& seen() const { return seen_; }
 
   private:
     PictureLine lineOf(const glm::dvec3& through, const glm::dvec3& direction) const;
 
     const Camera& camera_;
     int perSide_;
+    PixelBox seen_;
     IndexBox box_;
     glm::dmat3 linear_;
     std::optional<PictureRays> rays_;  // from an eye
@@ -48,9 +52,11 @@ class PictureLines {
 };
 
 /// Returns how many lines of sight a pixel needs along each side: one where pixels are no larger
-/// than voxels in the middle of the volume, else more than there are voxels, kMostPerSide at most.
+/// than voxels in the middle of the volume, else as many as there are voxels. Fewer, but at least
+/// kLeastPerSide, where a picture would have more than kMostLines that may meet the volume.
 int linesPerSide(const Volume& volume, const Camera& camera);
 
-inline constexpr int kMostPerSide = 16;
+inline constexpr int kLeastPerSide = 16;
+inline constexpr double kMostLines = 0x1p22;
 
 }  // namespace deltasplat

@@ -154,6 +154,34 @@ TEST(RayModes, PicturesFromAnEyeAgreeWithAPlainLoop) {
 }
 
 // A slab that is wide enough: each ray's way through it is known, whatever the spacing.
+// A pixel of any size has the mean over its square: what voxels hold is lost nowhere, wherever they
+// lie in it.
+TEST(RayModes, SumsOfLargePixelsKeepWhatVoxelsHold) {
+    const Volume one = makeVolume({{3, -7, 2}, {3, -7, 2}}, [](int, int, int) { return 1000; });
+    const Volume few = makeVolume({{-15, -12, -9}, {14, 12, 10}}, [](int x, int y, int z) {
+        return (x * 31 + y * 17 + z * 7 + 10000) % 97 == 0 ? 200 : kInactive;
+    });
+    for (const Volume* volume : {&one, &few}) {
+        const double held = volume == &one ? 1000 : 200.0 * double(few.activeCount);
+        // Lines are a voxel apart: of one alone they hit more or less of its middle.
+        const double bound = volume == &one ? 0.08 : 0.02;
+        for (const int voxels : {5, 40, 64, 625, 9000}) {
+            for (const glm::dvec3& aside : {glm::dvec3(0), glm::dvec3(0.4, -0.3, 0.2)}) {
+                RenderOptions options;
+                options.mode = Mode::kXray;
+                options.camera.view = "iso";
+                options.camera.targetWorld = glm::dvec3(3, -7, 2) + double(voxels) * aside;
+                options.camera.sizePixels = {20, 16};
+                options.camera.frameWidthWorld = 20.0 * voxels;
+                const Image image = render(*volume, options).image;
+                double sum = 0;
+                for (std::size_t i = 0; i < image.rgba.size(); i += 4) sum += image.rgba[i];
+                EXPECT_NEAR(sum * voxels * voxels / held, 1, bound) << voxels;
+            }
+        }
+    }
+}
+
 TEST(RayModes, RadiographOfASlabIsTheExponential) {
     for (const glm::dvec3& spacing : {glm::dvec3(1), glm::dvec3(1, 1, 50), glm::dvec3(3, 2, 0.5)}) {
         const int thickness = 12;
