@@ -32,9 +32,9 @@ int linesPerSide(const Volume& volume, const Camera& camera) {
     const double pixels = pixelsPerVoxel(volume, camera);
     const glm::dvec2 size(camera.sizePixels);
     // From an eye each row and column is held.
-    const double kMostAcross = camera.projection == Projection::kOrtho ? 0x1p30 : 0x1p18;
+    const double mostAcross = camera.projection == Projection::kOrtho ? 0x1p30 : 0x1p18;
     const double most =
-        std::max(std::floor(kMostAcross / std::max(size.x, size.y)), double(kLeastPerSide));
+        std::max(std::floor(mostAcross / std::max(size.x, size.y)), double(kLeastPerSide));
     // Less than a tenth of a voxel too few does not matter.
     const double wanted = pixels > 0 ? std::clamp(std::ceil(1 / pixels - 0.1), 1.0, most) : most;
     if (wanted <= kLeastPerSide) return int(wanted);

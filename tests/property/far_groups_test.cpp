@@ -106,7 +106,7 @@ constexpr double kLimit = 300e6;
 
 // Who sees all sides sees a dot of the other one as well.
 void expectSame(const Image& picture, const Image& expected, const CameraOptions& camera) {
-    const float ofDot = camera.projection == Projection::kLatlong ? 1e-5f : 0;
+    const float ofDot = camera.projection == Projection::kLatlong ? 1e-4f : 0;
     ASSERT_EQ(picture.size, expected.size);
     int others = 0;
     float most = 0;
