@@ -113,14 +113,14 @@ class RayPicture {
         tile.sums.assign(std::size_t(pixels.x) * std::size_t(pixels.y), {});
         const glm::ivec2 from = n * (part_.min + first), to = n * (part_.min + last);
         const PixelBox seen{glm::max(from, lines_.seen().min), glm::min(to, lines_.seen().max)};
+        const int side = tileLines(mode_);
         // A pixel of many lines is looked at part by part.
-        for (int top = from.y + (seen.min.y - from.y) / kTileLines * kTileLines; top < seen.max.y;
-             top += kTileLines) {
-            for (int left = from.x + (seen.min.x - from.x) / kTileLines * kTileLines;
-                 left < seen.max.x; left += kTileLines) {
+        for (int top = from.y + (seen.min.y - from.y) / side * side; top < seen.max.y;
+             top += side) {
+            for (int left = from.x + (seen.min.x - from.x) / side * side; left < seen.max.x;
+                 left += side) {
                 const glm::ivec2 begin(left, top);
-                follow({glm::max(begin, seen.min), glm::min(begin + kTileLines, seen.max)}, begin,
-                       tile);
+                follow({glm::max(begin, seen.min), glm::min(begin + side, seen.max)}, begin, tile);
                 for (std::size_t i = 0; i < tile.lines.size(); ++i) {
                     const glm::ivec2 pixel = (tile.places[i] - from) / n;
                     addTo(tile.sums[std::size_t(pixel.y * pixels.x + pixel.x)], tile.found[i],
