@@ -10,6 +10,7 @@
 #include "deltasplat/memory_limit.h"
 #include "ingest/files/file_name.h"
 #include "support/error_of.h"
+#include "support/memory_beyond.h"
 #include "unit/temp_folder.h"
 
 namespace deltasplat {
@@ -52,7 +53,7 @@ TEST(CheckedJson, MemoryIsAskedForBeforeItIsTaken) {
     std::string lists = "[";
     for (int i = 0; i < 2000000; ++i) lists += "[],";
     lists += "0]";
-    setMemoryLimit(std::uint64_t{100} << 20);
+    setMemoryLimit(test::memoryBeyond(std::uint64_t{100} << 20));
     const std::string said = complaint(lists);
     setMemoryLimit(0);
     EXPECT_EQ(said.find("failed: a.json: needs "), 0U) << said;

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "deltasplat/memory_limit.h"
+#include "support/memory_beyond.h"
 #include "unit/dicom_helpers.h"
 #include "unit/format_helpers.h"
 
@@ -297,7 +298,7 @@ TEST(DicomFramesError, ASeriesTwice) {
 // A table of half a megabyte that all frames have, in which each looks up its pixel.
 void expectOneTable(DicomFile file, double scale) {
     constexpr int kFrames = 2500;
-    setMemoryLimit(std::uint64_t{1} << 30);
+    setMemoryLimit(test::memoryBeyond(std::uint64_t{1} << 30));
     file.columns = file.rows = 1;
     file.slope = file.intercept = "";
     file.frames = std::to_string(kFrames);
@@ -353,7 +354,7 @@ TEST(DicomFramesError, FramesBeyondMemory) {
     while (offsets.size() < 2 * kFrames - 1) offsets += "\\1";
     file.more[0x3004000c] = decimalText(offsets);
     writeBytes("a.dcm", file.bytes());
-    setMemoryLimit(std::uint64_t{200} << 20);
+    setMemoryLimit(test::memoryBeyond(std::uint64_t{200} << 20));
     try {
         readVolume("a.dcm");
         ADD_FAILURE();
