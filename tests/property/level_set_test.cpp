@@ -136,7 +136,7 @@ TEST(LevelSetBand, IsContinuedAsItsValuesGoOn) {
         const std::uint64_t added = volume.activeCount - thin->activeVoxelCount();
         EXPECT_EQ(warnings[0], "OpenVDB grid: the level set's band ends too near to the surface; " +
                                    std::to_string(added) +
-                                   " voxels beside it go on as its values do");
+                                   " voxels beside it go on as their values do");
         EXPECT_GT(added, 900u);
         EXPECT_LT(added, 1800u);
         double worst = 0;
