@@ -16,6 +16,7 @@
 #include "far_groups.h"
 #include "image/clear_image.h"
 #include "listener_part.h"
+#include "number_text.h"
 #include "parallel.h"
 #include "ray_picture.h"
 #include "rays/depth_shade.h"
@@ -69,7 +70,7 @@ class RayPicture {
         : mode_(task.options.mode),
           rays_(rays),
           part_(task.part),
-          lines_(task.volume, task.camera, linesPerSide(task.volume, task.camera)),
+          lines_(task.volume, task.camera, countLines(task.volume, task.camera).perSide),
           painter_(task.volume, task.options, rays, task.keepsFound),
           shade_(shadeOf(task)) {}
 
@@ -192,6 +193,14 @@ void renderTask(const RayTask& task, const Listener& listener, Image& image, Ren
     const Clock::time_point start = Clock::now();
     const RayRule rule = ruleOf(task.options.mode);
     const RayVolume rays = makeRayVolume(task.volume, rule, valueMapOf(task.options));
+    const double apart = countLines(task.volume, task.camera).voxelsApart;
+    constexpr double kHardlyApart = 1.5;
+    if (apart > kHardlyApart) {
+        listener.warn("picture: its pixels are so large that lines of sight are " +
+                      numberText(std::round(apart)) +
+                      " voxels apart, and may miss what is thinner; a larger `sizePixels` or a "
+                      "smaller `frameWidthWorld` shows it");
+    }
     const RayPicture picture(task, rays);
     stats.prepareSeconds += secondsSince(start);
     stats.visible = rays.visible;
@@ -239,7 +248,7 @@ void putTogether(const Image& found, glm::ivec2 first, Mode mode, Image& all) {
 
 // Widens a part to the tiles that a picture of the volume alone has: bits are those of tiles.
 PixelBox wholeTiles(const PixelBox& part, const Volume& volume, const Camera& camera, Mode mode) {
-    const int pixels = std::max(1, tileLines(mode) / linesPerSide(volume, camera));
+    const int pixels = std::max(1, tileLines(mode) / countLines(volume, camera).perSide);
     return {part.min / pixels * pixels,
             glm::min((part.max + pixels - 1) / pixels * pixels, camera.sizePixels)};
 }

@@ -51,10 +51,15 @@ class PictureLines {
     std::optional<PictureLine> first_;
 };
 
-/// Returns how many lines of sight a pixel needs along each side: one where pixels are no larger
+struct LineCount {
+    int perSide = 1;
+    double voxelsApart = 1;  ///< how far lines are apart where a voxel is narrowest; at least 1
+};
+
+/// Counts the lines of sight that a pixel needs along each side: one where pixels are no larger
 /// than voxels in the middle of the volume, else as many as there are voxels. Fewer, but at least
 /// kLeastPerSide, where a picture would have more than kMostLines that may meet the volume.
-int linesPerSide(const Volume& volume, const Camera& camera);
+LineCount countLines(const Volume& volume, const Camera& camera);
 
 inline constexpr int kLeastPerSide = 16;
 inline constexpr double kMostLines = 0x1p22;

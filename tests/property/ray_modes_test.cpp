@@ -182,6 +182,36 @@ TEST(RayModes, SumsOfLargePixelsKeepWhatVoxelsHold) {
     }
 }
 
+// Of voxels of any shape, seen from any side.
+TEST(RayModes, SumsOfLargePixelsAreMeansOfSmallOnes) {
+    Volume volume = makeVolume({{0, 0, 0}, {63, 63, 15}}, [](int x, int y, int z) {
+        return (x / 3 * 7 + y / 3 * 5 + z * 3) % 11 < 4 ? 200 : 0;
+    });
+    for (const glm::dvec3& spacing : {glm::dvec3(0.5, 0.5, 5), glm::dvec3(1, 20, 1)}) {
+        for (int axis = 0; axis < 3; ++axis) volume.worldFromIndex[axis][axis] = spacing[axis];
+        for (const char* view : {"front", "left", "top", "iso"}) {
+            RenderOptions options;
+            options.mode = Mode::kXray;
+            options.camera.view = view;
+            options.camera.sizePixels = {256, 256};
+            const Image fine = render(volume, options).image;
+            options.camera.sizePixels = {16, 16};
+            const Image coarse = render(volume, options).image;
+            double most = 0, worst = 0;
+            for (int y = 0; y < 16; ++y) {
+                for (int x = 0; x < 16; ++x) {
+                    double mean = 0;
+                    for (int i = 0; i < 256; ++i)
+                        mean += fine.pixel(16 * x + i % 16, 16 * y + i / 16)[0] / 256;
+                    most = std::max(most, mean);
+                    worst = std::max(worst, std::abs(mean - double(coarse.pixel(x, y)[0])));
+                }
+            }
+            EXPECT_LT(worst, 0.05 * most) << view << ' ' << spacing.z;
+        }
+    }
+}
+
 TEST(RayModes, RadiographOfASlabIsTheExponential) {
     for (const glm::dvec3& spacing : {glm::dvec3(1), glm::dvec3(1, 1, 50), glm::dvec3(3, 2, 0.5)}) {
         const int thickness = 12;

@@ -289,7 +289,7 @@ TEST(ReadNrrd, NumbersOfText) {
     const std::string header =
         nrrd({{"type", "double "}, {"sizes", "3 1 1"}, {"encoding", "ascii"}, {"endian", ""}}) +
         "\n";
-    writeBytes("a.nrrd", header + "1e-500 -1e-400 2." + std::string(300, '0'));
+    writeBytes("a.nrrd", header + "1e-50000 -1e-400 2." + std::string(300, '0'));
     EXPECT_EQ(valuesOf(readVolume("a.nrrd")), (std::vector<double>{0, 0, 2}));
     writeBytes("a.nrrd", header + "1." + std::string(500, '0') + " 2 3 4");
     expectRefused(
@@ -298,6 +298,9 @@ TEST(ReadNrrd, NumbersOfText) {
         "a.nrrd");
     writeBytes("a.nrrd", header + "1 1e999 3");
     expectRefused("a.nrrd: got \"1e999\" among numbers; expected values of type float64", "a.nrrd");
+    writeBytes("a.nrrd",
+               nrrd({{"sizes", "3 1 1"}, {"encoding", "ascii"}, {"endian", ""}}) + "\n1 9e999 3");
+    expectRefused("a.nrrd: got \"9e999\" among numbers; expected values of type uint16", "a.nrrd");
 }
 
 TEST(ReadNrrd, AxesOfOneVoxel) {

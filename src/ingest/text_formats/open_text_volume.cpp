@@ -177,15 +177,18 @@ class TextValues {
         auto result = std::from_chars(begin, end, value);
         if constexpr (std::is_floating_point_v<T>) {
             // A number too near to 0 for its type is 0, as for any other reader.
-            long double wide = 1;
-            if (result.ec == std::errc::result_out_of_range && result.ptr == end &&
-                std::from_chars(begin, end, wide).ec == std::errc{} && std::fabs(wide) < 1)
-                return T(wide);
+            if (result.ec == std::errc::result_out_of_range && result.ptr == end) {
+                long double wide = 1;
+                const bool isKnown = std::from_chars(begin, end, wide).ec == std::errc{};
+                const bool isTiny = text.find("e-") != text.npos || text.find("E-") != text.npos;
+                if (isKnown ? std::fabs(wide) < 1 : isTiny) return T(isKnown ? wide : 0);
+            }
         }
         // Whole numbers may be written as real ones are: "3.0".
         if constexpr (std::is_integral_v<T>) {
             double real = 0;
-            if (result.ptr != end && std::from_chars(begin, end, real).ptr == end &&
+            const auto whole = std::from_chars(begin, end, real);
+            if (result.ptr != end && whole.ec == std::errc{} && whole.ptr == end &&
                 real == std::floor(real) && std::fabs(real) < 0x1p53 &&
                 real >= double(std::numeric_limits<T>::min()) &&
                 real <= double(std::numeric_limits<T>::max())) {
