@@ -63,6 +63,10 @@ DepthShade shadeOf(const RayTask& task) {
     return shade;
 }
 
+std::size_t rowMajor(glm::ivec2 pixel, int width) {
+    return std::size_t(pixel.y) * std::size_t(width) + std::size_t(pixel.x);
+}
+
 // All that the pixels of a picture have in common.
 class RayPicture {
   public:
@@ -124,15 +128,14 @@ class RayPicture {
                 follow({glm::max(begin, seen.min), glm::min(begin + side, seen.max)}, begin, tile);
                 for (std::size_t i = 0; i < tile.lines.size(); ++i) {
                     const glm::ivec2 pixel = (tile.places[i] - from) / n;
-                    addTo(tile.sums[std::size_t(pixel.y * pixels.x + pixel.x)], tile.found[i],
-                          tile.lines[i]);
+                    addTo(tile.sums[rowMajor(pixel, pixels.x)], tile.found[i], tile.lines[i]);
                 }
             }
         }
         for (int y = first.y; y < last.y; ++y) {
             for (int x = first.x; x < last.x; ++x) {
                 const glm::ivec2 at = glm::ivec2(x, y) - first;
-                paint(tile.sums[std::size_t(at.y * pixels.x + at.x)], image.pixel(x, y));
+                paint(tile.sums[rowMajor(at, pixels.x)], image.pixel(x, y));
             }
         }
     }

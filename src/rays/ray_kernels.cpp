@@ -179,9 +179,7 @@ HWY_INLINE Reading<V> readingAt(const RayPatch& patch, const RayRun& rays, std::
     };
     const auto wholeU = place(floorU, rays.wholeU, patch.sizeU);
     const auto wholeV = place(floorV, rays.wholeV, patch.sizeV);
-    Reading<V> reading;
-    reading.u = hn::Sub(u, floorU);
-    reading.v = hn::Sub(v, floorV);
+    Reading<V> reading{hn::Sub(u, floorU), hn::Sub(v, floorV), {}, {}};
     const auto row = hn::Mul(wholeU, hn::Set(ints, patch.sizeV));
     hn::Store(hn::Add(row, wholeV), ints, reading.offsets);
     if (patch.tops) {

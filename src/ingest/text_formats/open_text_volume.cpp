@@ -308,9 +308,9 @@ DenseSource flattened(DenseSource source, const TextVolume& volume) {
                          const std::byte* from, std::byte* to) {
         std::pair<std::size_t, std::int64_t> top{0, 0};
         for (const auto& [number, labels] : layers) {
-            const double value = withRawType(stored, [&](auto zero) {
-                return double(loadValue<decltype(zero)>(from + bytes * std::size_t(number), swap));
-            });
+            const std::byte* const layer = from + bytes * std::size_t(number);
+            const double value = withRawType(
+                stored, [&](auto zero) { return double(loadValue<decltype(zero)>(layer, swap)); });
             if (!(std::fabs(value) < 0x1p53) || value == 0) continue;
             const auto found = labels.find(std::int64_t(value));
             if (found != labels.end() && double(found->first) == value)
