@@ -116,8 +116,7 @@ ReadBox<double> boxReader(const Volume& volume) {
         using T = typename std::decay_t<decltype(tree)>::ValueType;
         reader =
             treeReader<double>(tree, [=, background = volume.background](T value, bool) -> double {
-                if constexpr (std::is_floating_point_v<T>)
-                    if (!std::isfinite(value)) return background;
+                if (!std::isfinite(double(value))) return background;
                 if constexpr (std::is_same_v<T, std::int64_t>)
                     if (isUnsigned) return double(std::uint64_t(value));
                 return double(value);

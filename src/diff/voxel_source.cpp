@@ -43,7 +43,8 @@ WideValue split(std::int64_t value) {
 
 WideValue split(std::uint64_t value) {
     constexpr std::uint64_t kStep = std::uint64_t{1} << 32;
-    return {double(value / kStep) * kWideStep, double(value % kStep)};
+    const std::uint64_t high = value / kStep;
+    return {double(high) * kWideStep, double(value % kStep)};
 }
 
 // Turns what a tree stores into values.

@@ -17,7 +17,7 @@ struct Overlap {
     int first;
     int last;
 
-    std::size_t count() const { return std::size_t(last - first + 1); }
+    std::size_t count() const { return std::size_t(last - first) + 1; }
     Overlap(const RayAxes& axes, const PatchBox& box, int i, int block) {
         const int a = axes.sign[i] * (8 * block - axes.first[i]);
         const int b = axes.sign[i] * (8 * block + 7 - axes.first[i]);

@@ -125,20 +125,19 @@ HWY_INLINE void takeMoments(const Along<V>& u, const Along<V>& v, V (*m)[4]) {
     m[0][1] = middleV;
     m[1][1] = hn::Add(hn::Mul(middleU, middleV),
                       hn::Mul(hn::Mul(u.slope, v.slope), hn::Set(tag, 1.0f / 6)));
-    Crossing<V> crossU[2], crossV[2];
     const auto cross = [&](const Along<V>& along, int node) {
         const auto end = hn::Add(along.first, hn::Mul(two, along.slope));
         return crossingAt(hn::Mul(hn::Sub(end, hn::Set(tag, float(node))), along.inverse));
     };
+    const Crossing<V> crossU[2] = {cross(u, 1), cross(u, 2)};
+    const Crossing<V> crossV[2] = {cross(v, 1), cross(v, 2)};
     for (int i = 0; i < kU - 2; ++i) {
-        crossU[i] = cross(u, i + 1);
         m[2 + i][0] = hn::Mul(u.slope, crossU[i].plain);
         const auto end = hn::Add(v.first, hn::Mul(two, v.slope));
         m[2 + i][1] = hn::Mul(
             u.slope, hn::Sub(hn::Mul(end, crossU[i].plain), hn::Mul(v.slope, crossU[i].weighed)));
     }
     for (int j = 0; j < kV - 2; ++j) {
-        crossV[j] = cross(v, j + 1);
         m[0][2 + j] = hn::Mul(v.slope, crossV[j].plain);
         const auto end = hn::Add(u.first, hn::Mul(two, u.slope));
         m[1][2 + j] = hn::Mul(
@@ -305,21 +304,15 @@ void sumSlicesKernel(const RayPatch& patch, const RayRun& rays) {
     });
 }
 
-// The 3x3 voxels around a ray, of each of two slices.
-template <class V>
-struct Cells {
-    V at[2][3][3];
-};
-
+// Loads the 3x3 voxels around a ray, of each of two slices.
 template <class V>
 HWY_INLINE void loadCells(const float* values, const RayPatch& patch, const std::int32_t* offsets,
-                          Cells<V>& cells) {
+                          V (*cells)[3][3]) {
     for (int slice = 0; slice < 2; ++slice) {
         for (int row = 0; row < 3; ++row) {
             const Fours<V> fours = loadFours(
                 values + slice * patch.sliceStep + row * std::ptrdiff_t{patch.sizeV}, offsets);
-            for (int column = 0; column < 3; ++column)
-                cells.at[slice][row][column] = fours.at[column];
+            for (int column = 0; column < 3; ++column) cells[slice][row][column] = fours.at[column];
         }
     }
 }
@@ -343,11 +336,11 @@ HWY_INLINE V mixed(const V* values, const V* shares) {
 
 // Reads cells linearly along all axes.
 template <class V>
-HWY_INLINE V readCells(const Cells<V>& cells, const V* sharesU, const V* sharesV, V way) {
+HWY_INLINE V readCells(const V (*cells)[3][3], const V* sharesU, const V* sharesV, V way) {
     V slices[2];
     for (int slice = 0; slice < 2; ++slice) {
         V rows[3];
-        for (int row = 0; row < 3; ++row) rows[row] = mixed(cells.at[slice][row], sharesV);
+        for (int row = 0; row < 3; ++row) rows[row] = mixed(cells[slice][row], sharesV);
         slices[slice] = mixed(rows, sharesU);
     }
     const auto rest = hn::Sub(hn::Set(EightTag(), 1.0f), way);
@@ -356,17 +349,17 @@ HWY_INLINE V readCells(const Cells<V>& cells, const V* sharesU, const V* sharesV
 
 // The largest of the cells' values; with `active`, of those where it is 1.
 template <class V>
-HWY_INLINE V largestOf(const Cells<V>& cells, const Cells<V>* active) {
+HWY_INLINE V largestOf(const V (*cells)[3][3], const V (*active)[3][3]) {
     const EightTag tag;
     const auto nothing = hn::Set(tag, -std::numeric_limits<float>::infinity());
     auto largest = nothing;
     for (int slice = 0; slice < 2; ++slice) {
         for (int row = 0; row < 3; ++row) {
             for (int column = 0; column < 3; ++column) {
-                auto value = cells.at[slice][row][column];
+                auto value = cells[slice][row][column];
                 if (active)
-                    value = hn::IfThenElse(hn::Gt(active->at[slice][row][column], hn::Zero(tag)),
-                                           value, nothing);
+                    value = hn::IfThenElse(hn::Gt(active[slice][row][column], hn::Zero(tag)), value,
+                                           nothing);
                 largest = hn::Max(largest, value);
             }
         }
@@ -376,12 +369,12 @@ HWY_INLINE V largestOf(const Cells<V>& cells, const Cells<V>* active) {
 
 // Where all of the cells are active.
 template <class V>
-HWY_INLINE auto areWhole(const Cells<V>& active) {
-    auto least = active.at[0][0][0];
+HWY_INLINE auto areWhole(const V (*active)[3][3]) {
+    auto least = active[0][0][0];
     for (int slice = 0; slice < 2; ++slice)
         for (int row = 0; row < 3; ++row)
             for (int column = 0; column < 3; ++column)
-                least = hn::Min(least, active.at[slice][row][column]);
+                least = hn::Min(least, active[slice][row][column]);
     return hn::Eq(least, hn::Set(EightTag(), 1.0f));
 }
 
@@ -417,12 +410,12 @@ HWY_INLINE void maxBetween(const RayPatch& patch, const RayRun& rays, std::size_
     };
     if (allMet && hn::AllFalse(tag, isBetter(topsAt<V>(patch, at, slice), depth))) return;
     const std::ptrdiff_t first = slice * patch.sliceStep;
-    Cells<V> values, active;
+    V values[2][3][3], active[2][3][3];
     loadCells(patch.values + first, patch, at.offsets, values);
     const bool readsActive = patch.active && (patch.leavesOut || !allMet);
     if (readsActive) loadCells(patch.active + first, patch, at.offsets, active);
     // For each line by itself, so that what is found does not depend on the number of lanes.
-    const auto top = largestOf(values, patch.leavesOut ? &active : nullptr);
+    const auto top = largestOf(values, patch.leavesOut ? active : nullptr);
     const auto mayFind = isBetter(top, depth);
     if (allMet && hn::AllFalse(tag, mayFind)) return;
     const auto one = hn::Set(tag, 1.0f);

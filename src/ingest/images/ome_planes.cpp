@@ -153,7 +153,8 @@ void setPages(const Pixels& pixels, const std::string& own, OmePicture& picture)
     NamedPlanes named(planes);
     const std::vector<Block> all(1);
     const std::vector<Block>& blocks = pixels.blocks.empty() ? all : pixels.blocks;
-    for (auto block = blocks.rbegin(); block != blocks.rend(); ++block) {
+    for (std::size_t later = 0; later < blocks.size(); ++later) {
+        const Block* const block = &blocks[blocks.size() - 1 - later];
         std::int64_t start = 0, stride = 1;
         bool isInside = true;
         for (const std::size_t axis : order) {

@@ -371,7 +371,8 @@ DenseSource image_module::openImages(const std::filesystem::path& input, const s
         readLayers(*stack, where, use, layers);
     };
     if (stack->channels > 1) return source;
-    return rescaled(std::move(source), said.rescale, wholeType(source.type, said.rescale));
+    const std::optional<RawType> whole = wholeType(source.type, said.rescale);
+    return rescaled(std::move(source), said.rescale, whole);
 }
 
 }  // namespace deltasplat
