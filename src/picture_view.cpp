@@ -246,9 +246,9 @@ PlanePlace PictureView::placePlane() const {
     return place;
 }
 
-double PictureView::show(Layer& layer, const PicturePart& part) const {
+double PictureView::show(Layer& layer, const PicturePart& part, const PlaneBox& whole) const {
     finish(layer);
-    return showPart(layer, part);
+    return plane_->showPart(layer, part, whole);
 }
 
 ErrorBound PictureView::errorBound() const {

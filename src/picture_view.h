@@ -63,8 +63,9 @@ class PictureView {
     glm::dmat4 worldFromSlices() const;
     /// Writes what is seen of the base plane into a part of the picture. Changes the layer on the
     /// way.
+    /// @param whole  as PlaneView::showPart
     /// @return the most that this can enlarge a difference of layers
-    double show(Layer& layer, const PicturePart& part) const;
+    double show(Layer& layer, const PicturePart& part, const PlaneBox& whole = {}) const;
     /// Makes of a layer, once, what showPart() shows.
     void finish(Layer& layer) const { plane_->finish(layer); }
     /// Writes what is seen of a finished layer into a part of the picture.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plane_view.h"
 
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
 #include <vector>
 
 #include "image/warp_region.h"
@@ -42,15 +44,41 @@ void PlaneView::finish(Layer& layer) const {
     if (finishChangesLayer()) lengthenSteps(layer);
 }
 
-double PlaneView::showPart(const Layer& finished, const PicturePart& part) const {
+double PlaneView::showPart(const Layer& finished, const PicturePart& part,
+                           const PlaneBox& whole) const {
     Raster raster{finished.box.min, finished.box.size(), finished.values.data(), finished.channels};
     raster.spans = finished.spans;
+    if (!whole.empty()) {
+        raster.wholeMin = whole.min;
+        raster.wholeSize = whole.size();
+    }
     if (place_.color) raster.color = *place_.color;
     const WarpFilter filter = warpFilterOf(place_.filter);
     if (place_.view.eye)
         return warpRegion(raster, camera_, place_.view, thin_, plane_, filter, part);
     return warp(raster, plane_.pixelFromPicture(), filter, part,
                 *finished.values.get_allocator().resource());
+}
+
+PlaneBox PlaneView::readBy(const PixelBox& pixels) const {
+    if (place_.view.eye) return readByRegion(camera_, place_.view, thin_, plane_, pixels);
+    // As many times as a filter is wide, it reaches twice; the rest is what halving takes, and taps
+    // that are read besides (warp.cpp).
+    constexpr double kReach = 5;
+    constexpr double kLeast = 16;
+    constexpr double kFar = 1 << 30;
+    const glm::dmat3& map = plane_.pixelFromPicture();
+    glm::dvec2 low(kFar), high(-kFar);
+    for (const glm::ivec2 corner :
+         {pixels.min, {pixels.max.x, pixels.min.y}, {pixels.min.x, pixels.max.y}, pixels.max}) {
+        const glm::dvec2 position(map * glm::dvec3(corner, 1));
+        low = glm::min(low, position);
+        high = glm::max(high, position);
+    }
+    const glm::dvec2 reach =
+        kReach * glm::sqrt(glm::dvec2(map[0] * map[0] + map[1] * map[1])) + kLeast;
+    return {glm::ivec2(glm::clamp(glm::floor(low - reach), -kFar, kFar)),
+            glm::ivec2(glm::clamp(glm::ceil(high + reach), -kFar, kFar))};
 }
 
 // Opacities are those of ways straight through the slices: makes them those of the lines of sight.

@@ -7,6 +7,7 @@
 
 #include "composite/layer.h"
 #include "deltasplat/image/picture_filter.h"
+#include "deltasplat/image/pixel_box.h"
 #include "deltasplat/view/camera.h"
 #include "deltasplat/view/factorization.h"
 #include "image/warp.h"
@@ -42,8 +43,14 @@ class PlaneView {
     bool finishChangesLayer() const { return place_.view.eye && place_.color; }
     /// Writes what is seen of a finished layer into a part of the picture: into all pixels of a
     /// parallel view, and into those of the region, where it is not empty, of one from an eye.
+    /// @param whole  where the layer is a part of a larger one: that one's box. What is shown is
+    /// the
+    ///               same, where it has what readBy() says.
     /// @return the most that this can enlarge a difference of layers
-    double showPart(const Layer& finished, const PicturePart& part) const;
+    double showPart(const Layer& finished, const PicturePart& part,
+                    const PlaneBox& whole = {}) const;
+    /// Returns the base plane's pixels that showing some of the picture's may read, and more.
+    PlaneBox readBy(const PixelBox& pixels) const;
 
   private:
     BasePlane makePlane() const;

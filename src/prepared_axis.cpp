@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "prepared_axis.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <string>
@@ -76,6 +77,16 @@ bool shorterMayShowLess(const ClassTable& classes, double times) {
     for (std::size_t number = 1; number < classes.size(); ++number)
         if (classes.unitsOf(Slot(number)).a < sure) return true;
     return false;
+}
+
+// Whether slices have far more room than there are voxels. Then few of their pixels are made at a
+// time (plane_parts.h): of slices that are made anew those that show something there, of others all
+// from the first one on.
+bool isMostlyEmpty(const Volume& volume, int sliceAxis) {
+    constexpr double kLeast = 1 << 23;
+    const glm::dvec3 size = glm::dvec3(volume.box.max) - glm::dvec3(volume.box.min) + 1.0;
+    const double pixels = size[(sliceAxis + 1) % 3] * size[(sliceAxis + 2) % 3];
+    return pixels > std::max(kLeast, double(volume.activeCount));
 }
 
 // Returns how opaque a voxel of each class is along its shortest side: what is mixed must depend on
@@ -316,7 +327,9 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorizatio
     const int sliceAxis = view.sliceAxis;
     const Subdivision parts = plan.partsIn(view);
     const bool isWhole =
-        painter && (painter->isEverywhereOther() || (view.eye && painter->dependsOnCamera()));
+        painter ? painter->isEverywhereOther() || (view.eye && painter->dependsOnCamera())
+                : options.method == Method::kAuto && options.tolerance.isExact() &&
+                      isMostlyEmpty(*scene.volume, sliceAxis);
     const bool hasPixels = plan.footprintWidth(view) == 1;
     const Encoding encoding =
         isWhole ? Encoding::kWhole

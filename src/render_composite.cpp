@@ -14,11 +14,13 @@
 #include "empty_picture.h"
 #include "far_groups.h"
 #include "image/clear_image.h"
+#include "image/deep_stages.h"
 #include "image/put_behind.h"
 #include "kept_memory.h"
 #include "kept_view.h"
 #include "listener_part.h"
 #include "number_text.h"
+#include "plane_parts.h"
 #include "render_frame.h"
 #include "stopwatch.h"
 #include "view_changes.h"
@@ -124,9 +126,19 @@ class CompositeRender {
     }
 
     double showFlat(const PictureView& picture, const Listener& listener) {
-        Layer merged = renderSlabs(picture.slabs(), kAllRows, partOf(listener, 0.2, 0.9));
+        const SlabInput& slabs = picture.slabs();
+        const PicturePart all = part();
+        std::vector<PlanePart> parts = planeParts(slabs, picture.plane(), {all.first, all.last()});
+        double gain = 0;
+        showParts(parts, all, slabs.plane.isParallel(), [&](PlanePart& one, const PicturePart& to) {
+            const double share = 0.7 * double(&one - parts.data()) / double(parts.size());
+            Layer merged = renderSlabs(
+                slabs, std::move(one.slabs), kAllRows,
+                partOf(listener, 0.2 + share, 0.2 + share + 0.7 / double(parts.size())), {});
+            gain = std::max(gain, timedWarp([&] { return picture.show(merged, to, one.whole); }));
+        });
         listener.report(0.95);
-        return timedWarp([&] { return picture.show(merged, part()); });
+        return gain;
     }
 
     // Makes words of a few slabs at a time, from the front on, and puts what they show behind what
@@ -342,27 +354,6 @@ class CompositeRender {
     std::int64_t rows_ = 0;
     std::int64_t rowsKept_ = 0;
     double waitedSeconds_ = 0;  // for the frame before
-};
-
-// Shows stages of a picture behind another one.
-class StagesBehind : public DeepStages {
-  public:
-    StagesBehind(const Image& front, DeepStages& stages)
-        : front_(front), shown_(front.size), stages_(stages) {}
-
-    void begin(std::shared_ptr<const SliceDepths> depths) override {
-        stages_.begin(std::move(depths));
-    }
-    void add(const Image& picture, double front, double back) override {
-        shown_ = front_;
-        putBehind(shown_, {0, 0}, picture);
-        stages_.add(shown_, front, back);
-    }
-
-  private:
-    const Image& front_;
-    Image shown_;
-    DeepStages& stages_;
 };
 
 // Renders groups of voxels that lie far apart, each behind those before it.

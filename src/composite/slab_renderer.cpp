@@ -30,7 +30,21 @@ std::vector<SeenSlab> seenSlabs(const SlabInput& input) {
     return seen;
 }
 
+namespace {
+
+// All of a slab that is seen.
+SlabRun wholeRun(const SeenSlab& seen) {
+    return {seen.firstSlice, seen.lastSlice};
+}
+
+std::span<const SlabRun> runsOf(const SeenSlab& seen, const SlabRun& whole) {
+    return seen.runs.empty() ? std::span(&whole, 1) : std::span(seen.runs);
+}
+
+}  // namespace
+
 PlaneBox reachOfSeen(const SlabInput& input, const SeenSlab& seen) {
+    if (!seen.runs.empty()) return seen.box;
     return reachOf(input.plane, input.layout, seen.firstSlice,
                    seen.lastSlice - seen.firstSlice + 1);
 }
@@ -64,6 +78,7 @@ SlabRenderer::SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen, g
     cutIntoStrips();
     findLargest();
     requireSlabMemory();
+    requireCountable(largest_);
     if (!hasFront_) merged_.setBox(reach_);
     if (!input.plane.isParallel() && channels_ == 4)
         steps_.emplace(input.plane, reach_, input.memory);
@@ -127,7 +142,8 @@ int SlabRenderer::stripCount() const {
     const std::size_t forThreads =
         threads == 1 ? 1 : (kPiecesPerThread * threads + slabs / 2) / slabs;
     const int rows = rows_.y - rows_.x;
-    const double pixels = double(input_.layout.sizePixels.x) * rows;
+    const int columns = drawsRuns() ? reach_.size().x : input_.layout.sizePixels.x;
+    const double pixels = double(columns) * rows;
     const double pixelBytes = 2.0 * sizeof(float) * channels_;
     const double parts = pixelBytes * pixels / kMostBytes;
     const double touched = pixelBytes * std::min(pixels, pixelsOfSlice());
@@ -254,18 +270,19 @@ PlaneBox SlabRenderer::boxOf(const Strip& strip, const SeenSlab& seen) const {
     return box;
 }
 
-// The part of the sheet that a slab needs for a strip.
-SheetLayout SlabRenderer::layoutOf(const Strip& strip, const SeenSlab& seen) const {
+// The part of the sheet that a run needs for a strip.
+SheetLayout SlabRenderer::layoutOf(const Strip& strip, const SeenSlab& seen,
+                                   const SlabRun& run) const {
     const SheetLayout& whole = input_.layout;
-    if (input_.plane.isParallel() && strips_.size() == 1) return whole;
+    if (input_.plane.isParallel() && strips_.size() == 1 && !drawsRuns()) return whole;
     const PlaneBox box = boxOf(strip, seen);
     SheetBox part{whole.sizePixels, {0, 0}};
-    for (const int slice : {seen.firstSlice, seen.lastSlice}) {
+    for (const int slice : {run.firstSlice, run.lastSlice}) {
         const SheetBox read = readBox(readingOf(input_.plane, whole, slice), box, whole);
         part.min = glm::min(part.min, read.min);
         part.max = glm::max(part.max, read.max);
     }
-    return layoutPart(whole, part);
+    return layoutPart(whole, part, run.blocks);
 }
 
 // The smallest that holds all parts.
@@ -273,9 +290,12 @@ void SlabRenderer::findLargest() {
     largest_ = layoutPart(input_.layout, {});
     for (const Strip& strip : strips_) {
         for (const SeenSlab& seen : seen_) {
-            const SheetLayout layout = layoutOf(strip, seen);
-            largest_.blocks = glm::max(largest_.blocks, layout.blocks);
-            largest_.sizePixels = glm::max(largest_.sizePixels, layout.sizePixels);
+            const SlabRun whole = wholeRun(seen);
+            for (const SlabRun& run : runsOf(seen, whole)) {
+                const SheetLayout layout = layoutOf(strip, seen, run);
+                largest_.blocks = glm::max(largest_.blocks, layout.blocks);
+                largest_.sizePixels = glm::max(largest_.sizePixels, layout.sizePixels);
+            }
         }
     }
 }
@@ -324,46 +344,56 @@ void SlabRenderer::renderPiece(const Piece& piece, Splatter& splatter) {
 double SlabRenderer::renderSlab(const SeenSlab& seen, const Strip& strip, const PlaneBox& box,
                                 Splatter& splatter, Layer& layer) {
     // However many slices it has.
-    if (seen.slab->seenWords == 0) return 0;
-    const SheetLayout layout = layoutOf(strip, seen);
-    if (box.empty() || layout.blocks.x == 0 || layout.blocks.y == 0) return 0;
-    SlabCover cover(input_.plane, walkOf(seen).last, strip.layers->covered(), layer);
+    if (seen.slab->seenWords == 0 || box.empty()) return 0;
+    const SlabRun whole = wholeRun(seen);
+    double compositeSeconds = 0;
+    for (const SlabRun& run : runsOf(seen, whole)) {
+        const SheetLayout layout = layoutOf(strip, seen, run);
+        if (layout.blocks.x == 0 || layout.blocks.y == 0) continue;
+        compositeSeconds += renderRun(*seen.slab, run, strip, layout, box, splatter, layer);
+    }
+    return compositeSeconds;
+}
+
+double SlabRenderer::renderRun(const PlannedSlab& slab, const SlabRun& run, const Strip& strip,
+                               const SheetLayout& layout, const PlaneBox& box, Splatter& splatter,
+                               Layer& layer) {
+    SlabCover cover(input_.plane, walkOf(slab, run).last, strip.layers->covered(), layer);
     if (cover.all()) return 0;
     if (input_.plane.isParallel()) {
         Compositor compositor(scales_);
         return walkSlices(
-            seen, layout, box, cover, splatter,
+            slab, run, layout, box, cover, splatter,
             [&](const auto& sheets, int, const SheetReading& reading, const SheetCover* hidden) {
                 return compositor.composite(sheets, reading, box.min.y, box.max.y, hidden, layer);
             });
     }
     PerspectiveCompositor compositor(input_.plane, scales_, steps_ ? &*steps_ : nullptr);
     return walkSlices(
-        seen, layout, box, cover, splatter,
+        slab, run, layout, box, cover, splatter,
         [&](const auto& sheets, int slice, const SheetReading& reading, const SheetCover* hidden) {
             return compositor.composite(sheets, slice, reading, box, hidden, layer);
         });
 }
 
 // Slices are walked from the front on.
-SlabRenderer::SliceWalk SlabRenderer::walkOf(const SeenSlab& seen) const {
-    const Slab& slab = *seen.slab;
-    if (input_.plane.frontToBack()) return {slab.firstSlice, seen.firstSlice, seen.lastSlice, 1};
-    return {slab.firstSlice + slab.sliceCount - 1, seen.lastSlice, seen.firstSlice, -1};
+SlabRenderer::SliceWalk SlabRenderer::walkOf(const PlannedSlab& slab, const SlabRun& run) const {
+    if (input_.plane.frontToBack()) return {slab.firstSlice, run.firstSlice, run.lastSlice, 1};
+    return {slab.firstSlice + slab.sliceCount - 1, run.lastSlice, run.firstSlice, -1};
 }
 
 // Calls composite(sheets, slice, reading, hidden), which returns how many pixels it went over, for
 // all slices that are seen.
 template <typename Composite>
-double SlabRenderer::walkSlices(const SeenSlab& seen, const SheetLayout& layout,
-                                const PlaneBox& box, SlabCover& cover, Splatter& splatter,
-                                const Composite& composite) {
+double SlabRenderer::walkSlices(const PlannedSlab& slab, const SlabRun& run,
+                                const SheetLayout& layout, const PlaneBox& box, SlabCover& cover,
+                                Splatter& splatter, const Composite& composite) {
     double compositeSeconds = 0;
-    splatter.begin(*seen.slab, layout);
-    const SliceWalk walk = walkOf(seen);
+    splatter.begin(slab, layout);
+    const SliceWalk walk = walkOf(slab, run);
     const SheetBox last = readBox(readingOf(input_.plane, layout, walk.last), box, layout);
     // What changes before the first that is seen is needed; nothing of it is read.
-    if (!seen.slab->whole) {
+    if (!slab.whole) {
         for (int slice = walk.begin; slice != walk.first; slice += walk.step)
             splatter.splat(slice, {0, 0});
     }

@@ -27,11 +27,22 @@ struct SlabInput {
     KeptMemory& memory;  ///< for layers, and the one for sheets
 };
 
+/// Slices [firstSlice, lastSlice] of a slab, and the blocks that any of them has.
+struct SlabRun {
+    int firstSlice;
+    int lastSlice;
+    BlockBox blocks = {};
+};
+
 /// A slab of which some slices are seen: those of [firstSlice, lastSlice].
 struct SeenSlab {
     const PlannedSlab* slab;
     int firstSlice;
     int lastSlice;
+    /// Where only what lies in a part of the base plane is drawn: the runs that have any of it, as
+    /// they are walked, and the box that they are drawn into. Else all is.
+    std::vector<SlabRun> runs = {};
+    PlaneBox box = {};
 };
 
 /// All rows of a base plane, [x, y).
@@ -78,21 +89,22 @@ class SlabRenderer {
         Strip& strip;
         std::size_t slab;
     };
-    // How the slices of a slab are walked.
+    // How the slices of a run are walked.
     struct SliceWalk {
         int begin;  // of the slab
         int first;  // that is seen
         int last;
         int step;
     };
-    SliceWalk walkOf(const SeenSlab& seen) const;
+    SliceWalk walkOf(const PlannedSlab& slab, const SlabRun& run) const;
+    bool drawsRuns() const { return !seen_.empty() && !seen_.front().runs.empty(); }
     void cutIntoStrips();
     int stripCount() const;
     std::vector<int> edgesOfStrips() const;
     std::vector<double> workOfRows() const;
     double pixelsOfSlice() const;
     int travel() const;
-    SheetLayout layoutOf(const Strip& strip, const SeenSlab& seen) const;
+    SheetLayout layoutOf(const Strip& strip, const SeenSlab& seen, const SlabRun& run) const;
     PlaneBox boxOf(const Strip& strip, const SeenSlab& seen) const;
     void findLargest();
     void requireSlabMemory() const;
@@ -100,9 +112,13 @@ class SlabRenderer {
     void renderPiece(const Piece& piece, Splatter& splatter);
     double renderSlab(const SeenSlab& seen, const Strip& strip, const PlaneBox& box,
                       Splatter& splatter, Layer& layer);
+    double renderRun(const PlannedSlab& slab, const SlabRun& run, const Strip& strip,
+                     const SheetLayout& layout, const PlaneBox& box, Splatter& splatter,
+                     Layer& layer);
     template <typename Composite>
-    double walkSlices(const SeenSlab& seen, const SheetLayout& layout, const PlaneBox& box,
-                      SlabCover& cover, Splatter& splatter, const Composite& composite);
+    double walkSlices(const PlannedSlab& slab, const SlabRun& run, const SheetLayout& layout,
+                      const PlaneBox& box, SlabCover& cover, Splatter& splatter,
+                      const Composite& composite);
     void count(const SeenSlab& seen, double compositeSeconds, double pieceSeconds);
 
     const SlabInput& input_;

@@ -2,6 +2,7 @@
 #include "image/halved_raster.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "floor_div.h"
 #include "image/halving_kernels.h"
@@ -109,11 +110,15 @@ class RowHalver {
 HalvedRaster::HalvedRaster(const Raster& raster, glm::bvec2 along, const LatticeBox& wanted,
                            std::pmr::memory_resource& memory)
     : halved_(raster) {
-    const glm::ivec2 end = raster.min + raster.size;
-    const Range columns = madeOf({raster.min.x, end.x}, along.x);
-    const Range rows = madeOf({raster.min.y, end.y}, along.y);
-    halved_.min = {columns.first, rows.first};
-    halved_.size = {columns.size(), rows.size()};
+    const auto halve = [&](glm::ivec2& min, glm::ivec2& size) {
+        const Range columns = madeOf({min.x, min.x + size.x}, along.x);
+        const Range rows = madeOf({min.y, min.y + size.y}, along.y);
+        min = {columns.first, rows.first};
+        size = {columns.size(), rows.size()};
+        return std::pair(columns, rows);
+    };
+    if (raster.wholeSize.x > 0) halve(halved_.wholeMin, halved_.wholeSize);
+    const auto [columns, rows] = halve(halved_.min, halved_.size);
     const std::size_t rowFloats = std::size_t(raster.channels) * columns.size();
     values_ = UnclearedArray<float>(rowFloats * rows.size(), memory);
     spans_.resize(std::size_t(rows.size()));

@@ -116,6 +116,14 @@ FixedPosition fixedPosition(glm::dvec2 position) {
     return {std::llround(position.x * unit), std::llround(position.y * unit)};
 }
 
+FixedPosition fixedPosition(glm::dvec2 position, const Raster& raster) {
+    FixedPosition fixed = fixedPosition(position);
+    const glm::i64vec2 before = glm::i64vec2(raster.min) - glm::i64vec2(raster.origin());
+    fixed.x -= before.x * (std::int64_t{1} << 32);
+    fixed.y -= before.y * (std::int64_t{1} << 32);
+    return fixed;
+}
+
 const FilterTable& narrowestFilter(WarpFilter filter) {
     // In the order of their names' declaration.
     static const FilterTable tables[] = {{WarpFilter::kSharp, 1},

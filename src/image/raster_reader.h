@@ -48,8 +48,10 @@ class EdgeSampler {
     const FilterTable& filterY_;
 };
 
-/// Returns a position, counted from the raster's first pixel, as a fixed number.
+/// Returns a position as a fixed number.
 FixedPosition fixedPosition(glm::dvec2 position);
+/// The same of one that is counted from Raster::origin(), counted from the first pixel.
+FixedPosition fixedPosition(glm::dvec2 position, const Raster& raster);
 
 /// Returns a filter that is not widened; made once.
 const FilterTable& narrowestFilter(WarpFilter filter);

@@ -171,10 +171,9 @@ class Warper {
     static constexpr int kStretch = 16;
 
     glm::dvec2 step() const { return map_[0]; }
-    // Positions run relative to the raster's first pixel, so that large index offsets cost no
-    // precision.
+    // Positions run relative to the raster's origin, so that large index offsets cost no precision.
     glm::dvec2 rowStart(int y) const {
-        return glm::dvec2(map_[1]) * (y + 0.5) + glm::dvec2(map_[2]) - glm::dvec2(raster_.min);
+        return glm::dvec2(map_[1]) * (y + 0.5) + glm::dvec2(map_[2]) - glm::dvec2(raster_.origin());
     }
     glm::dvec2 positionOf(int x, int y) const { return rowStart(y) + step() * (x + 0.5); }
 
@@ -210,8 +209,9 @@ class Warper {
         const PositionBox shown = positionsOf(
             first, last, [&](glm::ivec2 pixel) { return positionOf(pixel.x, pixel.y); });
         const glm::dvec2 edge = raster_.size - 1;
-        const glm::dvec2 low = glm::max(glm::floor(shown.low) - reach_, glm::dvec2(0));
-        const glm::dvec2 high = glm::min(glm::floor(shown.high) + reach_, edge);
+        const glm::dvec2 before = raster_.min - raster_.origin();
+        const glm::dvec2 low = glm::max(glm::floor(shown.low) - before - reach_, glm::dvec2(0));
+        const glm::dvec2 high = glm::min(glm::floor(shown.high) - before + reach_, edge);
         return !(low.x <= high.x && low.y <= high.y) ||
                !tiles_.anyIn(glm::ivec2(low), glm::ivec2(high));
     }
@@ -219,7 +219,7 @@ class Warper {
     void warpRow(int y, const std::vector<Columns>& stretches) {
         const Columns all{part_.first.x, part_.last().x};
         if (stretches.empty()) return clearColumns(y, all);
-        const glm::dvec2 last = raster_.size - 1;
+        const glm::dvec2 last = raster_.extent() - 1;
         const glm::dvec2 reach(filterX_.taps() / 2, filterY_.taps() / 2);
         const Columns reached = columnsWithin(y, {0, part_.size.x}, -reach, last + reach);
         // A thousandth of a pixel more, so that rounding lets no tap fall outside.
@@ -246,7 +246,7 @@ class Warper {
 
     void sampleSingly(int y, const Columns& columns) {
         for (int x = columns.first; x < columns.last; ++x)
-            sampler_.sample(fixedPosition(positionOf(x, y)), part_.pixel(x, y));
+            sampler_.sample(fixedPosition(positionOf(x, y), raster_), part_.pixel(x, y));
     }
 
     // Samples columns of a row whose positions are counted from the first of `inner`.
@@ -255,7 +255,7 @@ class Warper {
         // A single pixel takes no step, which may be too long to be written as a fixed number.
         const FixedPosition along =
             fixedPosition(inner.last - inner.first > 1 ? step() : glm::dvec2(0));
-        FixedPosition position = fixedPosition(positionOf(inner.first, y));
+        FixedPosition position = fixedPosition(positionOf(inner.first, y), raster_);
         position.x += along.x * (columns.first - inner.first);
         position.y += along.y * (columns.first - inner.first);
         sampleRun(raster_, filterX_, filterY_, position, along, columns.last - columns.first,

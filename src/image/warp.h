@@ -23,6 +23,14 @@ struct Raster {
     /// [size.y], or empty: columns [x, y) outside of which a row is zero.
     std::span<const glm::ivec2> spans{};
 
+    /// Of a part of a larger raster, which has all that is read of that one: where it begins, and
+    /// how large it is. Positions are rounded as they are on it. Without a size it is all there is.
+    glm::ivec2 wholeMin{0};
+    glm::ivec2 wholeSize{0};
+
+    glm::ivec2 origin() const { return wholeSize.x > 0 ? wholeMin : min; }
+    glm::ivec2 extent() const { return wholeSize.x > 0 ? wholeSize : size; }
+
     /// Columns [x, y) outside of which row `i` is zero.
     glm::ivec2 span(int i) const {
         return spans.empty() ? glm::ivec2(0, size.x) : spans[std::size_t(i)];

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/common.hpp>
+#include <glm/exponential.hpp>
 #include <glm/gtc/type_precision.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vector_relational.hpp>
@@ -87,9 +88,9 @@ class RegionWarper {
           part_(part),
           ladder_(filter) {
         // Elsewhere it ends where there is nothing more.
-        const glm::ivec2 end = raster.min + raster.size;
+        const glm::ivec2 end = raster.origin() + raster.extent();
         for (int axis = 0; axis < 2; ++axis) {
-            if (raster.min[axis] <= plane.limits().min[axis]) goesOnBefore_[axis] = true;
+            if (raster.origin()[axis] <= plane.limits().min[axis]) goesOnBefore_[axis] = true;
             if (end[axis] >= plane.limits().max[axis]) goesOnBehind_[axis] = true;
         }
     }
@@ -113,15 +114,15 @@ class RegionWarper {
 
     // What a pixel reads.
     struct Place {
-        glm::dvec2 position{0.0};  // on the raster, from its first pixel
+        glm::dvec2 position{0.0};  // on the raster, from its origin
         glm::u8vec2 rungs{0};      // filters along the raster's axes
         bool belongs = false;
     };
 
-    // Raster position, from its first pixel, that a line of sight in steps leads to.
+    // Raster position, from its origin, that a line of sight in steps leads to.
     glm::dvec2 positionOf(const glm::dvec3& steps) const {
         const glm::dvec2 slope = slopeScale_ * glm::dvec2(steps.z, steps.y) / steps.x;
-        return plane_.pixelOf(slope) - glm::dvec2(raster_.min);
+        return plane_.pixelOf(slope) - glm::dvec2(raster_.origin());
     }
 
     // Whether a line of sight is one of those that the region is made of.
@@ -160,7 +161,7 @@ class RegionWarper {
         constexpr double kReach = 2.1;  // of a filter of stretch 1, and of rungs that are rounded
         double room = std::numeric_limits<double>::infinity();
         if (goesOnBefore_[axis]) room = std::min(room, position[axis]);
-        if (goesOnBehind_[axis]) room = std::min(room, raster_.size[axis] - 1 - position[axis]);
+        if (goesOnBehind_[axis]) room = std::min(room, raster_.extent()[axis] - 1 - position[axis]);
         return std::max(room, 0.0) / kReach;
     }
 
@@ -179,8 +180,9 @@ class RegionWarper {
         }
         // Filters reach as many pixels of the picture as they have taps at its finest.
         const glm::dvec2 reach = 3.0 + 3.0 * (high - low) / double(kBand - 1);
-        low = glm::max(glm::floor(low - reach), glm::dvec2(0));
-        high = glm::min(glm::ceil(high + reach), glm::dvec2(raster_.size - 1));
+        const glm::dvec2 before(raster_.min - raster_.origin());
+        low = glm::max(glm::floor(low - reach) - before, glm::dvec2(0));
+        high = glm::min(glm::ceil(high + reach) - before, glm::dvec2(raster_.size - 1));
         return !(low.x <= high.x && low.y <= high.y) ||
                !tiles_.anyIn(glm::ivec2(low), glm::ivec2(high));
     }
@@ -223,18 +225,19 @@ class RegionWarper {
             const FilterTable& filterX = ladder_.at(place.rungs.x);
             const FilterTable& filterY = ladder_.at(place.rungs.y);
             const glm::dvec2 reach(filterX.taps() / 2, filterY.taps() / 2);
-            const glm::dvec2 last(raster_.size - 1);
+            const glm::dvec2 last(raster_.extent() - 1);
             const double padded = filterX.paddedTaps() - filterX.taps() + 1;
             if (all(glm::greaterThanEqual(place.position, reach)) &&
                 all(glm::lessThanEqual(place.position, last - reach - glm::dvec2(padded, 1)))) {
-                run[count++] = fixedPosition(place.position);
+                run[count++] = fixedPosition(place.position, raster_);
                 continue;
             }
             flush(i);
             if (all(glm::greaterThan(place.position, -reach)) &&
                 all(glm::lessThan(place.position, last + reach))) {
                 EdgeSampler(raster_, filterX, filterY)
-                    .sample(fixedPosition(place.position), part_.pixel(first.x + int(i), first.y));
+                    .sample(fixedPosition(place.position, raster_),
+                            part_.pixel(first.x + int(i), first.y));
             }
         }
         flush(places.size());
@@ -263,6 +266,40 @@ double warpRegion(const Raster& raster, const Camera& camera, const Factorizatio
     RegionWarper warper(raster, camera, view, thin, plane, filter, part);
     warper.run();
     return warper.gain();
+}
+
+PlaneBox readByRegion(const Camera& camera, const Factorization& view, const Factorization& thin,
+                      const BasePlane& plane, const PixelBox& pixels) {
+    // As many times as a filter is wide, it reaches twice, and rungs may be wider, and are read
+    // with some taps more.
+    constexpr double kReach = 2.5;
+    constexpr double kLeast = 8;
+    constexpr double kFar = 1 << 30;
+    const PictureRays rays(camera, glm::inverse(view.worldFromStep));
+    const glm::ivec3 order = sliceOrder(view.sliceAxis);
+    const double slopeScale = thin.slopeLimit / view.slopeLimit;
+    glm::dvec2 low(kFar), high(-kFar);
+    for (int y = pixels.min.y; y < pixels.max.y; ++y) {
+        for (int x = pixels.min.x; x < pixels.max.x; ++x) {
+            const glm::dvec3 steps = rays.at(x, y);
+            if (!belongs(steps, order)) continue;
+            const glm::dvec2 slope = glm::dvec2(steps.z, steps.y) / steps.x;
+            const auto moved = [&](const glm::dvec3& along) {
+                return glm::dvec2(along.z, along.y) - slope * along.x;
+            };
+            const glm::dvec2 right = moved(rays.alongX(x, y));
+            const glm::dvec2 down = moved(rays.alongY(x, y));
+            const double scale = slopeScale / plane.spacing() / steps.x;
+            const glm::dvec2 reach =
+                kReach * scale * glm::sqrt(right * right + down * down) + kLeast;
+            const glm::dvec2 position = plane.pixelOf(slopeScale * slope);
+            low = glm::min(low, position - reach);
+            high = glm::max(high, position + reach);
+        }
+    }
+    if (high.x < low.x) return {};
+    return {glm::ivec2(glm::clamp(glm::floor(low), -kFar, kFar)),
+            glm::ivec2(glm::clamp(glm::ceil(high), -kFar, kFar)) + 1};
 }
 
 }  // namespace deltasplat

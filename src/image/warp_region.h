@@ -2,6 +2,7 @@
 #pragma once
 
 #include "deltasplat/image/image.h"
+#include "deltasplat/image/pixel_box.h"
 #include "deltasplat/view/camera.h"
 #include "image/warp.h"
 #include "view/base_plane.h"
@@ -18,5 +19,9 @@ namespace deltasplat {
 double warpRegion(const Raster& raster, const Camera& camera, const Factorization& view,
                   const Factorization& thin, const BasePlane& plane, WarpFilter filter,
                   const PicturePart& part);
+
+/// Returns the pixels of the plane that some of the picture's read, and a few around them.
+PlaneBox readByRegion(const Camera& camera, const Factorization& view, const Factorization& thin,
+                      const BasePlane& plane, const PixelBox& pixels);
 
 }  // namespace deltasplat

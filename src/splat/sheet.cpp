@@ -9,7 +9,6 @@
 
 #include "deltasplat/error.h"
 #include "floor_div.h"
-#include "memory.h"
 #include "splat/tile_bytes.h"
 
 namespace deltasplat {
@@ -19,23 +18,29 @@ int roundUpToTile(int pixels) {
     return (pixels + kTilePixels - 1) / kTilePixels * kTilePixels;
 }
 
-// Stamps name their place with 32 bits, and rows and columns are counted with 31, wherever a slice
-// may be shifted to.
-void requireCountable(const glm::i64vec2& size, std::int64_t shift) {
-    const std::string text = std::to_string(size.x) + "x" + std::to_string(size.y);
-    requireMemory("sheet of " + text + " pixels", 16.0 * double(size.x) * double(size.y));
-    const double longest =
-        double(std::numeric_limits<std::int32_t>::max() - 2 * kTilePixels) - 2.0 * double(shift);
-    const double most = std::numeric_limits<std::uint32_t>::max();
-    if (double(std::max(size.x, size.y)) <= longest &&
-        double(size.x + kTilePixels) * double(size.y) <= most) {
-        return;
-    }
-    throw Error(ErrorCode::kUsage, gotExpected("sheet", text + " pixels",
-                                               "at most 4294967295, a smaller `resolution`"));
+std::string sizeText(const glm::i64vec2& size) {
+    return std::to_string(size.x) + "x" + std::to_string(size.y) + " pixels";
+}
+
+// Rows and columns are counted with 31 bits, wherever a slice may be shifted to.
+void requireShort(const glm::i64vec2& size, std::int64_t shift) {
+    const std::int64_t longest =
+        std::numeric_limits<std::int32_t>::max() - 2 * kTilePixels - 2 * shift;
+    if (std::max(size.x, size.y) <= longest) return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected("sheet", sizeText(size),
+                            "at most " + std::to_string(std::max<std::int64_t>(longest, 0)) +
+                                " each way, a smaller `resolution`"));
 }
 
 }  // namespace
+
+void requireCountable(const SheetLayout& layout) {
+    const double most = std::numeric_limits<std::uint32_t>::max();
+    if (double(layout.pitchPixels()) * layout.sizePixels.y <= most) return;
+    throw Error(ErrorCode::kUsage, gotExpected("sheet", sizeText(layout.sizePixels),
+                                               "at most 4294967295, a smaller `resolution`"));
+}
 
 SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int channels) {
     SheetLayout layout;
@@ -61,7 +66,7 @@ SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int cha
     const glm::i64vec2 size =
         std::int64_t{layout.blockPixels()} * blocks + std::int64_t{2 * layout.marginPixels};
     const std::int64_t slices = std::int64_t{box.max.x} - box.min.x + 1;
-    requireCountable(size, slices * footprint.resolution);
+    requireShort(size, slices * footprint.resolution);
     layout.blocks = glm::ivec2(blocks);
     layout.sizePixels = glm::ivec2(size);
     return layout;
@@ -88,12 +93,14 @@ glm::ivec2 blocksReaching(const SheetLayout& layout, int first, int last) {
     return reachingOf(layout, layout.blocks.y, first, last);
 }
 
-SheetLayout layoutPart(const SheetLayout& whole, const SheetBox& box) {
+SheetLayout layoutPart(const SheetLayout& whole, const SheetBox& box, const BlockBox& among) {
     const int blockPixels = whole.blockPixels();
     const int group = whole.voxelsPerPixel;
     SheetLayout part = whole;
     for (int axis = 0; axis < 2; ++axis) {
         glm::ivec2 blocks = reachingOf(whole, whole.blocks[axis], box.min[axis], box.max[axis]);
+        blocks = {std::max(blocks.x, among.first[axis]),
+                  std::min<int>(blocks.y - 1, among.last[axis]) + 1};
         blocks = {blocks.x / group * group, (blocks.y + group - 1) / group * group};
         part.blocks[axis] = std::max(blocks.y - blocks.x, 0);
         part.firstVoxel[axis] += 8 * blocks.x;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <limits>
 #include <memory_resource>
 #include <span>
 #include <type_traits>
@@ -67,13 +68,23 @@ glm::ivec2 pixelsReached(const SheetLayout& layout, int block);
 /// x.
 glm::ivec2 blocksReaching(const SheetLayout& layout, int first, int last);
 
+/// Blocks [first, last] of a sheet, (v, u).
+struct BlockBox {
+    glm::ivec2 first{0};
+    glm::ivec2 last{std::numeric_limits<int>::max()};
+};
+
 /// Lays out the part of a sheet in which the pixels of a box are complete: the blocks whose
 /// footprints reach them. Without blocks if there are none.
-SheetLayout layoutPart(const SheetLayout& whole, const SheetBox& box);
+/// @param among  others are left out
+SheetLayout layoutPart(const SheetLayout& whole, const SheetBox& box, const BlockBox& among = {});
+
+/// @throw Error(kUsage) if a sheet has more pixels than can be counted in 32 bits: stamps name
+/// their place with as many
+void requireCountable(const SheetLayout& layout);
 
 /// Lays out a sheet for the voxels of a (slice, u, v) box.
-/// @throw Error(kUsage) if it would have more pixels than can be counted in 32 bits;
-/// Error(kFailed) if it does not fit into memory
+/// @throw Error(kUsage) if its rows or columns are too many to be counted in 32 bits
 SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int channels = 4);
 
 /// The running splat of the current slice: 32-bit integers `[row][pitch][channels]`, in slice

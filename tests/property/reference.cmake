@@ -21,6 +21,7 @@ deltasplat_test(property/rays_test.cpp SOURCES ${DELTASPLAT_SCENE_SOURCES})
 deltasplat_test(property/ray_modes_test.cpp
     SOURCES ${DELTASPLAT_SCENE_SOURCES} reference/reference_rays.cpp)
 deltasplat_test(property/far_groups_test.cpp)
+deltasplat_test(property/wide_voxels_test.cpp)
 deltasplat_test(property/picture_place_test.cpp)
 deltasplat_test(property/parted_picture_test.cpp)
 deltasplat_test(property/prepared_test.cpp)
