@@ -20,6 +20,7 @@
 #include "parallel.h"
 #include "ray_picture.h"
 #include "rays/depth_shade.h"
+#include "rays/line_cells.h"
 #include "rays/picture_lines.h"
 #include "rays/ray_follower.h"
 #include "shared_progress.h"
@@ -75,6 +76,7 @@ class RayPicture {
           rays_(rays),
           part_(task.part),
           lines_(task.volume, task.camera, countLines(task.volume, task.camera).perSide),
+          cells_(lines_, rays, tileLines(mode_)),
           painter_(task.volume, task.options, rays, task.keepsFound),
           shade_(shadeOf(task)) {}
 
@@ -125,7 +127,9 @@ class RayPicture {
             for (int left = from.x + (seen.min.x - from.x) / side * side; left < seen.max.x;
                  left += side) {
                 const glm::ivec2 begin(left, top);
-                follow({glm::max(begin, seen.min), glm::min(begin + side, seen.max)}, begin, tile);
+                const PixelBox wanted{glm::max(begin, seen.min), glm::min(begin + side, seen.max)};
+                if (!cells_.anyIn(wanted)) continue;
+                follow(wanted, begin, tile);
                 for (std::size_t i = 0; i < tile.lines.size(); ++i) {
                     const glm::ivec2 pixel = (tile.places[i] - from) / n;
                     addTo(tile.sums[rowMajor(pixel, pixels.x)], tile.found[i], tile.lines[i]);
@@ -187,6 +191,7 @@ class RayPicture {
     const RayVolume& rays_;
     PixelBox part_;
     PictureLines lines_;
+    LineCells cells_;
     ValuePainter painter_;
     DepthShade shade_;
 };

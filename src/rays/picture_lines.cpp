@@ -76,20 +76,28 @@ LineCount countLines(const Volume& volume, const Camera& camera) {
 }
 
 PictureLines::PictureLines(const Volume& volume, const Camera& camera, int perSide)
-    : camera_(camera), perSide_(perSide), box_(volume.box), linear_(volume.worldFromIndex) {
+    : camera_(camera),
+      perSide_(perSide),
+      fine_(refined(camera, perSide)),
+      world_(volume.worldFromIndex),
+      box_(volume.box),
+      seen_(seenOf(volume.box)),
+      linear_(volume.worldFromIndex) {
     const glm::dmat3 fromWorld = glm::inverse(linear_);
-    const Camera fine = refined(camera, perSide);
-    seen_ = seenBox(volume.box, volume.worldFromIndex, fine, kReach).part;
     const glm::dvec3 first(volume.worldFromIndex * glm::dvec4(volume.box.min, 1));
     if (camera.projection != Projection::kOrtho) {
-        rays_.emplace(fine, fromWorld);
+        rays_.emplace(fine_, fromWorld);
         origin_ = fromWorld * (camera.eyeWorld() - first);
         return;
     }
-    origin_ = fromWorld * (fine.worldFromPixel({0.5, 0.5}) - first);
-    alongX_ = fine.pixelWorld() * (fromWorld * camera.right);
-    alongY_ = -fine.pixelHeightWorld() * (fromWorld * camera.up);
+    origin_ = fromWorld * (fine_.worldFromPixel({0.5, 0.5}) - first);
+    alongX_ = fine_.pixelWorld() * (fromWorld * camera.right);
+    alongY_ = -fine_.pixelHeightWorld() * (fromWorld * camera.up);
     first_ = lineOf(origin_, fromWorld * camera.direction);
+}
+
+PixelBox PictureLines::seenOf(const IndexBox& box) const {
+    return seenBox(box, world_, fine_, kReach).part;
 }
 
 PictureLine PictureLines::at(int x, int y) const {

@@ -33,14 +33,18 @@ class PictureLines {
     PictureLine at(int x, int y) const;
     /// Lines that may meet the volume, counted likewise.
     const PixelBox& seen() const { return seen_; }
+    /// Lines that may meet voxels of a box.
+    PixelBox seenOf(const IndexBox& box) const;
 
   private:
     PictureLine lineOf(const glm::dvec3& through, const glm::dvec3& direction) const;
 
     const Camera& camera_;
     int perSide_;
-    PixelBox seen_;
+    Camera fine_;  // which has a pixel for each line
+    glm::dmat4 world_;
     IndexBox box_;
+    PixelBox seen_;
     glm::dmat3 linear_;
     std::optional<PictureRays> rays_;  // from an eye
     /// From an eye: that, in voxels from the box's first. Parallel: the first line's place, and

@@ -64,14 +64,17 @@ std::vector<glm::ivec3> chain(int size) {
     return places;
 }
 
+float valueAt(const glm::ivec3& at) {
+    return 0.25f + float((7 * at.x + 5 * at.y + 3 * at.z) & 7) / 8;
+}
+
 // @param isKept  those of its voxels that are there
 Volume volumeOf(const std::vector<glm::ivec3>& places,
                 const std::function<bool(const glm::ivec3&)>& isKept) {
     const auto grid = openvdb::FloatGrid::create(0);
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     for (const glm::ivec3& at : places) {
-        const float value = 0.25f + float((7 * at.x + 5 * at.y + 3 * at.z) & 7) / 8;
-        if (isKept(at)) grid->tree().setValue({at.x, at.y, at.z}, value);
+        if (isKept(at)) grid->tree().setValue({at.x, at.y, at.z}, valueAt(at));
     }
     return makeVolume(grid);
 }
@@ -207,6 +210,38 @@ TEST(WideVoxels, lookAsTheyDoInOnePiece) {
             parted.show({{0, 0}, whole.size}, whole);
             EXPECT_EQ(mostDifference(result.image, whole), 0)
                 << name << ' ' << camera.view << ' ' << int(camera.projection);
+        }
+    }
+}
+
+// Lines of sight that meet no block are not followed; none that does is left out.
+TEST(WideVoxels, haveTheirSums) {
+    constexpr int kSize = 1000;
+    const auto ramp = [](int size) {
+        std::vector<glm::ivec3> places;
+        for (int i = 0; i < size; ++i) places.push_back({i, i / 2, -i / 3});
+        return places;
+    };
+    for (const Shape& shape : {Shape(ramp), Shape(corner)}) {
+        const std::vector<glm::ivec3> places = shape(kSize);
+        const Volume volume = allOf(places);
+        double held = 0;
+        for (const glm::ivec3& at : places) held += double(valueAt(at));
+        if (volume.activeCount < places.size()) held -= 2 * double(valueAt({0, 0, 0}));
+        for (CameraOptions camera : camerasOfAll()) {
+            if (camera.projection != Projection::kOrtho) continue;
+            camera.sizePixels = {256, 256};
+            camera.frameWidthWorld = 2 * kSize;
+            RenderOptions options;
+            options.mode = Mode::kXray;
+            options.camera = camera;
+            const RenderResult result = render(volume, options);
+            double shown = 0;
+            for (std::size_t i = 0; i < result.image.rgba.size(); i += 4)
+                shown += double(result.image.rgba[i]);
+            const double pixel = result.camera.pixelWorld() * result.camera.pixelHeightWorld();
+            // A square of lines has a twentieth of what there is.
+            EXPECT_NEAR(shown * pixel / held, 1, 2e-2) << camera.view;
         }
     }
 }
