@@ -125,6 +125,7 @@ struct FarGroups::Impl {
     void numberGroups();
     IndexBox boxOf(std::size_t begin, std::size_t end) const;
     std::uint64_t voxelsOf(const Group& group) const;
+    double widthWorld(const IndexBox& box) const;
 
     const Volume& volume;
     std::optional<IndexBox> moreBox;
@@ -370,6 +371,17 @@ std::vector<std::size_t> FarGroups::frontToBack(const Camera& camera) const {
     return order;
 }
 
+// The longest diagonal of a box of voxels, with one around it.
+double FarGroups::Impl::widthWorld(const IndexBox& box) const {
+    double width = 0;
+    for (int i = 0; i < 4; ++i) {
+        const glm::dvec3 diagonal = cornerOf(box, 7 - i) - cornerOf(box, i) +
+                                    glm::dvec3(i & 1 ? -2 : 2, i & 2 ? -2 : 2, i & 4 ? -2 : 2);
+        width = std::max(width, glm::length(glm::dmat3(volume.worldFromIndex) * diagonal));
+    }
+    return width;
+}
+
 bool FarGroups::warnOfDots(const Camera& camera, const Listener& listener) const {
     constexpr double kDot = 2;  // pixels
     std::size_t seen = 0;
@@ -389,18 +401,17 @@ bool FarGroups::warnOfDots(const Camera& camera, const Listener& listener) const
     const glm::dvec3 middle(
         impl_->volume.worldFromIndex *
         glm::dvec4(0.5 * (glm::dvec3(largest->box.min) + glm::dvec3(largest->box.max)), 1));
-    double width = 0;
-    for (int i = 0; i < 4; ++i) {
-        const glm::dvec3 diagonal = cornerOf(largest->box, 7 - i) - cornerOf(largest->box, i) +
-                                    glm::dvec3(i & 1 ? -2 : 2, i & 2 ? -2 : 2, i & 4 ? -2 : 2);
-        width = std::max(width, glm::length(glm::dmat3(impl_->volume.worldFromIndex) * diagonal));
+    std::string shownBy;
+    // From an eye it takes another eye.
+    if (camera.projection == Projection::kOrtho) {
+        shownBy = ", and `targetWorld` " + numberText(middle) + " with `frameWidthWorld` " +
+                  roundedText(impl_->widthWorld(largest->box)) + " shows";
     }
     const double tenths = std::floor(10 * std::min(share, 100.0)) / 10;
     listener.warn("picture: no more than dots, for the voxels lie far apart, in " +
                   std::to_string(size()) + " groups of a pixel or two at most; " +
                   numberText(tenths) + " % of the voxels lie in " + rangesText(largest->box) +
-                  ", which `cropIndex` leaves, and `targetWorld` " + numberText(middle) +
-                  " with `frameWidthWorld` " + roundedText(width) + " shows");
+                  ", which `cropIndex` leaves" + shownBy);
     return true;
 }
 

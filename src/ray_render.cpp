@@ -128,7 +128,11 @@ class RayPicture {
                  left += side) {
                 const glm::ivec2 begin(left, top);
                 const PixelBox wanted{glm::max(begin, seen.min), glm::min(begin + side, seen.max)};
-                if (!cells_.anyIn(wanted)) continue;
+                if (!cells_.areUnknown()) {
+                    const std::vector<std::uint32_t> blocks = cells_.blocksBehind(wanted);
+                    if (blocks.empty()) continue;
+                    tile.follower.lookAt(blocks);
+                }
                 follow(wanted, begin, tile);
                 for (std::size_t i = 0; i < tile.lines.size(); ++i) {
                     const glm::ivec2 pixel = (tile.places[i] - from) / n;
@@ -201,14 +205,6 @@ void renderTask(const RayTask& task, const Listener& listener, Image& image, Ren
     const Clock::time_point start = Clock::now();
     const RayRule rule = ruleOf(task.options.mode);
     const RayVolume rays = makeRayVolume(task.volume, rule, valueMapOf(task.options));
-    const double apart = countLines(task.volume, task.camera).voxelsApart;
-    constexpr double kHardlyApart = 1.5;
-    if (apart > kHardlyApart) {
-        listener.warn("picture: its pixels are so large that lines of sight are " +
-                      numberText(std::round(apart)) +
-                      " voxels apart, and may miss what is thinner; a larger `sizePixels` or a "
-                      "smaller `frameWidthWorld` shows it");
-    }
     const RayPicture picture(task, rays);
     stats.prepareSeconds += secondsSince(start);
     stats.visible = rays.visible;
@@ -217,6 +213,18 @@ void renderTask(const RayTask& task, const Listener& listener, Image& image, Ren
     const double seconds = secondsSince(renderStart);
     stats.splatSeconds += seconds;
     stats.renderSeconds += seconds;
+}
+
+// @param apart  how far lines of sight are apart, in voxels
+void warnOfLines(double apart, const Camera& camera, const Listener& listener) {
+    constexpr double kHardlyApart = 1.5;
+    if (apart <= kHardlyApart) return;
+    listener.warn("picture: its pixels are so large that lines of sight are " +
+                  numberText(std::round(apart)) +
+                  " voxels apart, and may miss what is thinner; a larger `sizePixels`" +
+                  (camera.projection == Projection::kOrtho ? " or a smaller `frameWidthWorld`"
+                                                           : " or a nearer camera") +
+                  " shows it");
 }
 
 bool isEmpty(const Image& image) {
@@ -266,6 +274,7 @@ PixelBox wholeTiles(const PixelBox& part, const Volume& volume, const Camera& ca
 bool renderFar(const FarGroups& far, const RayTask& whole, const Listener& listener,
                RenderResult& result) {
     const std::vector<std::size_t> order = far.frontToBack(whole.camera);
+    double apart = 1;
     for (std::size_t i = 0; i < order.size(); ++i) {
         const FarGroups::Seen seen = far.seenBy(whole.camera, order[i]);
         if (showsSums(whole.options.mode) ? seen.part.empty() : seen.isNothing()) continue;
@@ -275,9 +284,11 @@ bool renderFar(const FarGroups& far, const RayTask& whole, const Listener& liste
         const double count = double(order.size());
         renderTask({volume, whole.options, whole.camera, part, whole.whole, true},
                    partOf(listener, double(i) / count, double(i + 1) / count), image, result.stats);
+        apart = std::max(apart, countLines(volume, whole.camera).voxelsApart);
         putTogether(image, part.min, whole.options.mode, result.image);
     }
     const bool saysDots = far.warnOfDots(whole.camera, listener);
+    if (!saysDots) warnOfLines(apart, whole.camera, listener);
     if (showsSums(whole.options.mode)) return saysDots;
     // The range of values is that of all in whatever group.
     const Volume one = far.volume(0);
@@ -311,6 +322,7 @@ void renderRays(const Volume& volume, const RenderOptions& options, const Listen
         if (far) {
             saysDots = renderFar(*far, whole, listener, result);
         } else {
+            warnOfLines(countLines(volume, result.camera).voxelsApart, result.camera, listener);
             renderTask(whole, listener, result.image, result.stats);
         }
         // Sums may be 0 of what is there.

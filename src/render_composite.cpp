@@ -47,6 +47,12 @@ struct HeldLayer {
     Layer layer;
 };
 
+// Of groups that lie far apart.
+struct FarSeen {
+    bool areAll = false;    // whether the picture shows all of them
+    bool saysDots = false;  // whether it has been said that it shows no more than dots
+};
+
 // Renders one picture, or the regions of one.
 class CompositeRender {
   public:
@@ -74,16 +80,17 @@ class CompositeRender {
     }
 
     // Who reads an empty volume has been told so.
-    void warnOfEmptyPicture(const Listener& listener) const {
+    // @param far  of groups that lie far apart
+    void warnOfEmptyPicture(const FarSeen& far, const Listener& listener) const {
         if (volume_.empty() || isAnythingSeen()) return;
-        if (stats_.visible == 0 && !isAnythingVisible(listener)) {
+        if (stats_.visible == 0 && !isAnythingVisible(far, listener)) {
             const bool isSurface = scene_.scene.optics.surface.has_value();
             listener.warn(
                 std::string("picture: empty, for ") +
                 (isSurface ? "the surface encloses" : "transfer function and extinction show") +
                 " none of the values " + numberText(volume_.valueMin) + " to " +
                 numberText(volume_.valueMax));
-        } else {
+        } else if (!far.saysDots) {
             listener.warn(emptyPictureText(volume_, "is far smaller than a pixel"));
         }
     }
@@ -284,9 +291,9 @@ class CompositeRender {
     }
 
     // Whether any voxel can be seen from elsewhere, of a picture whose regions see none.
-    bool isAnythingVisible(const Listener& listener) const {
+    bool isAnythingVisible(const FarSeen& far, const Listener& listener) const {
         // Groups that are not seen have not been asked.
-        if (scene_.far) return true;
+        if (scene_.far) return !far.areAll;
         const Factorization& view = plan_->views.front();
         return view.eye &&
                scene_.axis(view, plan_->sheets, listener, nullptr, true)->deltas().visible() > 0;
@@ -363,18 +370,20 @@ class FarRender {
               const Wanted& wanted, RenderStats& stats)
         : scene_(scene), camera_(camera), memory_(memory), wanted_(wanted), stats_(stats) {}
 
-    void run(const Listener& listener) {
+    FarSeen run(const Listener& listener) {
         const FarGroups& far = *scene_.far;
         if (wanted_.image) clearImage(*wanted_.image);
         const std::vector<std::size_t> order = far.frontToBack(camera_);
         const double count = double(order.size());
+        bool areAll = true;
         for (std::size_t i = 0; i < order.size(); ++i) {
             const FarGroups::Seen seen = far.seenBy(camera_, order[i]);
+            areAll = areAll && !seen.isNothing();
             if (seen.isNothing()) continue;
             renderGroup(std::make_shared<const PreparedScene::Impl>(scene_, order[i]), seen.part,
                         partOf(listener, double(i) / count, double(i + 1) / count));
         }
-        far.warnOfDots(camera_, listener);
+        return {areAll, far.warnOfDots(camera_, listener)};
     }
 
   private:
@@ -431,12 +440,13 @@ RenderStats renderAs(const Wanted& wanted, const PreparedScene::Impl& scene, con
     stats.method = scene.options.method;
     stats.tolerance = scene.options.tolerance;
     CompositeRender render(scene, camera, memory, wanted, stats);
+    FarSeen far;
     if (scene.far) {
-        FarRender(scene, camera, memory, wanted, stats).run(listener);
+        far = FarRender(scene, camera, memory, wanted, stats).run(listener);
     } else {
         render.run(listener);
     }
-    render.warnOfEmptyPicture(listener);
+    render.warnOfEmptyPicture(far, listener);
     return stats;
 }
 

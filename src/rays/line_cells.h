@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "rays/picture_lines.h"
@@ -9,23 +10,27 @@
 
 namespace deltasplat {
 
-/// Squares of lines of sight that may meet something of a volume: where there is little in a large
-/// box, most meet nothing.
+/// Which blocks squares of lines of sight may meet: where there is little in a large box, most
+/// squares meet none.
 class LineCells {
   public:
     /// @param side  of a square, in lines
     LineCells(const PictureLines& lines, const RayVolume& volume, int side);
 
-    /// Whether any of these lines may meet something.
-    bool anyIn(const PixelBox& lines) const;
+    /// Whether blocks are so many that nobody knows who meets which.
+    bool areUnknown() const { return ends_.empty(); }
+    /// Numbers of the blocks that any of these lines may meet, in order.
+    std::vector<std::uint32_t> blocksBehind(const PixelBox& lines) const;
 
   private:
     PixelBox cellsOf(const PixelBox& lines) const;
     std::size_t indexOf(glm::ivec2 cell) const;
 
     int side_;
-    PixelBox box_;               // in squares
-    std::vector<bool> mayMeet_;  // of each, row by row; empty: all of them
+    PixelBox box_;                       // in squares
+    std::vector<std::size_t> ends_;      // of the blocks of each, row by row, which begin at its
+                                         // predecessor's
+    std::vector<std::uint32_t> blocks_;  // of all
 };
 
 }  // namespace deltasplat

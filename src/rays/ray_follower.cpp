@@ -104,6 +104,17 @@ void RayFollower::Sums::set(std::size_t i, const Sums& other, std::size_t k) {
     met[i] = other.met[k];
 }
 
+void RayFollower::lookAt(std::span<const std::uint32_t> blocks) {
+    looksAt_.emplace();
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<int>& layers = (*looksAt_)[std::size_t(axis)];
+        for (const std::uint32_t block : blocks)
+            layers.push_back(volume_.blocks[block].position[axis]);
+        std::sort(layers.begin(), layers.end());
+        layers.erase(std::unique(layers.begin(), layers.end()), layers.end());
+    }
+}
+
 void RayFollower::follow(std::span<const SightRay> rays, std::span<RayFound> found) {
     std::vector<bool> isDone(rays.size());
     for (std::size_t first = 0; first < rays.size(); ++first) {
@@ -162,7 +173,8 @@ void RayFollower::listLayers() {
         from = std::min(from, group.slices().x);
         to = std::max(to, group.slices().y);
     }
-    const std::vector<int>& blocks = volume_.layers[std::size_t(axes_.order[0])];
+    const auto& layersOf = looksAt_ ? *looksAt_ : volume_.layers;
+    const std::vector<int>& blocks = layersOf[std::size_t(axes_.order[0])];
     layers_.clear();
     for (std::size_t n = 0; n < blocks.size(); ++n) {
         const int block = blocks[axes_.sign.x > 0 ? n : blocks.size() - 1 - n];

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,6 +29,10 @@ class RayFollower {
     /// @param volume  made for this rule
     RayFollower(const RayVolume& volume, RayRule rule)
         : volume_(volume), rule_(rule), reader_(volume, rule) {}
+
+    /// Says which blocks the lines may meet that are followed next; without that, it is any.
+    /// @param blocks  numbers of the volume's
+    void lookAt(std::span<const std::uint32_t> blocks);
 
     /// Follows lines of sight, best of places beside each other.
     /// @param found  as many
@@ -73,6 +80,7 @@ class RayFollower {
     const RayVolume& volume_;
     RayRule rule_;
     PatchReader reader_;
+    std::optional<std::array<std::vector<int>, 3>> looksAt_;  // as RayVolume::layers
     RayAxes axes_;
     Alike alike_;
     std::vector<Group> groups_;

@@ -389,14 +389,26 @@ TEST(FarGroups, areDotsInAFrameOfAll) {
                 std::string said;
                 render(both, options, {{}, [&](const std::string& text) { said += text + "\n"; }});
                 EXPECT_NE(said.find("no more than dots"), std::string::npos) << said;
-                if (mode != Mode::kComposite) {
-                    EXPECT_EQ(said.find("picture: empty"), std::string::npos) << said;
-                }
+                EXPECT_EQ(said.find("picture: empty"), std::string::npos) << said;
+                EXPECT_EQ(said.find("`frameWidthWorld`") != std::string::npos,
+                          projection == Projection::kOrtho)
+                    << said;
                 EXPECT_NE(said.find("50 % of the voxels lie in 0:10,0:10,0:10"), std::string::npos)
                     << said;
             }
         }
     }
+}
+
+// A picture of all groups that the transfer function hides says so.
+TEST(FarGroups, mayAllBeHidden) {
+    const Volume both = blobsAt({{0, 0, 0}, {1 << 20, 300, 20}});
+    RenderOptions options = someOptions();
+    options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {1, 0, 0.5, 0}};
+    options.camera.sizePixels = {64, 32};
+    std::string said;
+    render(both, options, {{}, [&](const std::string& text) { said += text + "\n"; }});
+    EXPECT_NE(said.find("show none of the values"), std::string::npos) << said;
 }
 
 // A stray voxel does not change how a cloud is drawn.
