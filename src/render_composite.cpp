@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -53,6 +54,9 @@ struct FarSeen {
     bool saysDots = false;  // whether it has been said that it shows no more than dots
 };
 
+// Opacity and light that nobody sees: an opacity of 8 bits would be 0.
+constexpr float kHardlySeen = 0.5f / 255;
+
 // Renders one picture, or the regions of one.
 class CompositeRender {
   public:
@@ -82,8 +86,10 @@ class CompositeRender {
     // Who reads an empty volume has been told so.
     // @param far  of groups that lie far apart
     void warnOfEmptyPicture(const FarSeen& far, const Listener& listener) const {
-        if (volume_.empty() || isAnythingSeen()) return;
-        if (stats_.visible == 0 && !isAnythingVisible(far, listener)) {
+        if (volume_.empty() || isAnyBeyond(kHardlySeen)) return;
+        if (isAnyBeyond(0)) {
+            if (!far.saysDots) listener.warn(faintPictureText());
+        } else if (stats_.visible == 0 && !isAnythingVisible(far, listener)) {
             const bool isSurface = scene_.scene.optics.surface.has_value();
             listener.warn(
                 std::string("picture: empty, for ") +
@@ -276,10 +282,10 @@ class CompositeRender {
         return result.gain;
     }
 
-    // Whether a picture, or what it would be made of, has anything to see.
-    bool isAnythingSeen() const {
-        const auto isAnyOf = [](const auto& values) {
-            const auto isSeen = [](float value) { return value != 0; };
+    // Whether a picture, or what it would be made of, has anything beyond a value.
+    bool isAnyBeyond(float least) const {
+        const auto isAnyOf = [least](const auto& values) {
+            const auto isSeen = [least](float value) { return std::abs(value) > least; };
             // Most pictures show something in the middle.
             const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
             return std::any_of(middle, values.end(), isSeen) ||

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <random>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -244,6 +245,21 @@ TEST(WideVoxels, haveTheirSums) {
             EXPECT_NEAR(shown * pixel / held, 1, 2e-2) << camera.view;
         }
     }
+}
+
+// What is too thin to be seen is said to be; a larger picture shows it.
+TEST(WideVoxels, maySeemEmpty) {
+    const Volume volume = allOf(wire(8000));
+    const auto saidOf = [&](const glm::ivec2& size) {
+        RenderOptions options = optionsOf(Look::kOneColor);
+        options.camera = camerasOfAll().front();
+        options.camera.sizePixels = size;
+        std::string said;
+        render(volume, options, {{}, [&](const std::string& text) { said += text; }});
+        return said;
+    };
+    EXPECT_NE(saidOf({16, 16}).find("picture: looks empty"), std::string::npos);
+    EXPECT_EQ(saidOf({400, 400}), "");
 }
 
 // The same bits on one thread, and with every slice splatted anew or not.

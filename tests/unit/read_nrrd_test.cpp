@@ -558,7 +558,7 @@ TEST(ReadNrrd, LayersOfSegments) {
                       "a.seg.nrrd: 2 layers of segments are read as one, with later segments on "
                       "top, numbered from 1 to 4 as layers share numbers (one layer: `volume` 0 to "
                       "1)",
-                      "a.seg.nrrd: 1 values of layers have no segment, and count as nothing"}));
+                      "a.seg.nrrd: 1 value of layers has no segment, and counts as nothing"}));
         EXPECT_EQ(volume.worldFromIndex,
                   glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1));
         for (const std::int64_t layer : {0, 1}) {

@@ -48,11 +48,11 @@ struct ReadOptions {
     std::optional<LevelSetSurface> levelSetSurface = {};
     std::optional<double> nanValue;  ///< replaces NaN and infinities; empty: they are an error
     RawFormat raw;                   ///< .raw: what the bytes are
-    /// NIfTI and .npy of more than three axes: which of their volumes, from 0 on; the fourth axis
-    /// counts fastest (of a C-ordered .npy the one before the last three). Empty: there has to be
-    /// one. TIFF that ImageJ or OME-XML describes: which of its channels and times, channels
-    /// counting fastest. Of a segmentation of 3D Slicer in layers: which layer; empty: all of them,
-    /// a voxel having the label that Slicer shows on top. Other formats pay no heed to it.
+    /// NIfTI, MetaImage and .npy of more than three axes: which of their volumes, from 0 on; the
+    /// fourth axis counts fastest (of a C-ordered .npy the one before the last three). Empty: there
+    /// has to be one. TIFF that ImageJ or OME-XML describes: which of its channels and times,
+    /// channels counting fastest. Of a segmentation of 3D Slicer in layers: which layer; empty: all
+    /// of them, a voxel having the label that Slicer shows on top. Other formats pay no heed to it.
     std::optional<std::int64_t> volume;
     /// DICOM: the UID of the series to read. Empty: there has to be one. Other formats pay no heed
     /// to it.
@@ -92,8 +92,8 @@ struct ReadOptions {
 /// Reads one scalar volume: `.vdb .raw .npy .nii .hdr .nrrd .nhdr .mhd .mha .dcm` and images
 /// (`.tif .png .jpg .bmp .pgm .exr`, of which pages are slices) by extension, in any case, all but
 /// DICOM and images also under gzip, which is found by content (.raw, .raw.gz: by name); a
-/// folder of DICOM slices or of images; a stack `slice.####.png` or `slice.%04d.png`. NRRD,
-/// MetaImage and DICOM need a build with ITK. What is passed over is said in a warning.
+/// folder of DICOM slices or of images; a stack `slice.####.png` or `slice.%04d.png`. DICOM needs a
+/// build with GDCM. What is passed over is said in a warning.
 /// Level sets and NaN are treated as `options` says; only active values of a .vdb count, a NaN
 /// background is taken as `nanValue` or 0, with a warning. An empty grid is a valid, empty volume,
 /// with a warning. Deterministic; not affected by the number of threads.

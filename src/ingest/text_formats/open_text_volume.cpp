@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "count_text.h"
 #include "ingest/choose_volume.h"
 #include "ingest/dense/dense_source.h"
 #include "ingest/files/file_name.h"
@@ -333,8 +334,10 @@ DenseSource flattened(DenseSource source, const TextVolume& volume) {
         *nameless = 0;
         all(use, listener);
         if (*nameless > 0 && !std::exchange(*said, true))
-            listener.warn(where + ": " + std::to_string(*nameless) +
-                          " values of layers have no segment, and count as nothing");
+            listener.warn(where + ": " +
+                          countText(*nameless, "value of layers has no segment, and counts",
+                                    "values of layers have no segment, and count") +
+                          " as nothing");
     };
     return result;
 }
