@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "image/clear_image.h"
+#include "memory.h"
 
 namespace deltasplat {
 namespace {
@@ -56,6 +57,9 @@ class PartFinder {
 
     std::vector<PlanePart> find(const PixelBox& pixels) {
         if (!isSparse(pixels)) return {{pixels, seen_, {}}};
+        // Of these, each half of a picture keeps its own.
+        requireMemory("parts of the picture",
+                      2.0 * sizeof(std::uint32_t) * double(deltas_.words.size()));
         std::vector<std::uint32_t> words(deltas_.words.size());
         for (std::size_t i = 0; i < words.size(); ++i) words[i] = std::uint32_t(i);
         divide(pixels, words);

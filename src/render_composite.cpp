@@ -144,6 +144,8 @@ class CompositeRender {
         std::vector<PlanePart> parts = planeParts(slabs, picture.plane(), {all.first, all.last()});
         double gain = 0;
         showParts(parts, all, slabs.plane.isParallel(), [&](PlanePart& one, const PicturePart& to) {
+            // Parts are of many sizes: memory that few can use would add up.
+            if (parts.size() > 1) memory_.endPicture();
             const double share = 0.7 * double(&one - parts.data()) / double(parts.size());
             Layer merged = renderSlabs(
                 slabs, std::move(one.slabs), kAllRows,
