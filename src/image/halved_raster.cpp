@@ -118,7 +118,8 @@ HalvedRaster::HalvedRaster(const Raster& raster, glm::bvec2 along, const Lattice
         return std::pair(columns, rows);
     };
     if (raster.wholeSize.x > 0) halve(halved_.wholeMin, halved_.wholeSize);
-    const auto [columns, rows] = halve(halved_.min, halved_.size);
+    const std::pair made = halve(halved_.min, halved_.size);
+    const Range columns = made.first, rows = made.second;
     const std::size_t rowFloats = std::size_t(raster.channels) * columns.size();
     values_ = UnclearedArray<float>(rowFloats * rows.size(), memory);
     spans_.resize(std::size_t(rows.size()));
