@@ -23,9 +23,8 @@ inline std::string emptyPictureText(const Volume& volume, const std::string& too
 /// Returns what is said of a picture that shows something that nobody will see.
 inline std::string faintPictureText() {
     return "picture: looks empty, for no pixel is opaque to a half of 1/255: what can be seen of "
-           "the "
-           "volume is far thinner than a pixel, or hardly opaque; `cropIndex` shows a part of it "
-           "larger, and `extinctionScale` makes it denser";
+           "the volume is far thinner than a pixel, or hardly opaque; `cropIndex` shows a part of "
+           "it larger, and `extinctionScale` makes it denser";
 }
 
 }  // namespace deltasplat

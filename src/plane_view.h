@@ -43,9 +43,8 @@ class PlaneView {
     bool finishChangesLayer() const { return place_.view.eye && place_.color; }
     /// Writes what is seen of a finished layer into a part of the picture: into all pixels of a
     /// parallel view, and into those of the region, where it is not empty, of one from an eye.
-    /// @param whole  where the layer is a part of a larger one: that one's box. What is shown is
-    /// the
-    ///               same, where it has what readBy() says.
+    /// @param whole  where the layer is a part of a larger one: that one's box. The part shows the
+    ///               same if it has what readBy() says.
     /// @return the most that this can enlarge a difference of layers
     double showPart(const Layer& finished, const PicturePart& part,
                     const PlaneBox& whole = {}) const;

@@ -105,14 +105,9 @@ void RayFollower::Sums::set(std::size_t i, const Sums& other, std::size_t k) {
 }
 
 void RayFollower::lookAt(std::span<const std::uint32_t> blocks) {
-    looksAt_.emplace();
-    for (int axis = 0; axis < 3; ++axis) {
-        std::vector<int>& layers = (*looksAt_)[std::size_t(axis)];
-        for (const std::uint32_t block : blocks)
-            layers.push_back(volume_.blocks[block].position[axis]);
-        std::sort(layers.begin(), layers.end());
-        layers.erase(std::unique(layers.begin(), layers.end()), layers.end());
-    }
+    looksAt_ = layersOf(blocks.size(), [&](std::size_t i) -> const CodeBlock& {
+        return volume_.blocks[blocks[i]];
+    });
 }
 
 void RayFollower::follow(std::span<const SightRay> rays, std::span<RayFound> found) {
@@ -173,8 +168,8 @@ void RayFollower::listLayers() {
         from = std::min(from, group.slices().x);
         to = std::max(to, group.slices().y);
     }
-    const auto& layersOf = looksAt_ ? *looksAt_ : volume_.layers;
-    const std::vector<int>& blocks = layersOf[std::size_t(axes_.order[0])];
+    const LayerNumbers& layers = looksAt_ ? *looksAt_ : volume_.layers;
+    const std::vector<int>& blocks = layers[std::size_t(axes_.order[0])];
     layers_.clear();
     for (std::size_t n = 0; n < blocks.size(); ++n) {
         const int block = blocks[axes_.sign.x > 0 ? n : blocks.size() - 1 - n];

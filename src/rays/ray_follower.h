@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -80,7 +79,7 @@ class RayFollower {
     const RayVolume& volume_;
     RayRule rule_;
     PatchReader reader_;
-    std::optional<std::array<std::vector<int>, 3>> looksAt_;  // as RayVolume::layers
+    std::optional<LayerNumbers> looksAt_;  // empty: all of the volume's
     RayAxes axes_;
     Alike alike_;
     std::vector<Group> groups_;

@@ -126,19 +126,6 @@ ActiveWords activeWords(const CodeTree::Leaf& leaf, int sliceAxis) {
     return words;
 }
 
-// Lists at which numbers of blocks there are any, along each axis.
-void listLayers(RayVolume& rays) {
-    for (int axis = 0; axis < 3; ++axis) {
-        std::vector<int>& layers = rays.layers[std::size_t(axis)];
-        for (const CodeBlock& block : rays.blocks) {
-            const int number = block.position[axis];
-            if (layers.empty() || layers.back() != number) layers.push_back(number);
-        }
-        std::sort(layers.begin(), layers.end());
-        layers.erase(std::unique(layers.begin(), layers.end()), layers.end());
-    }
-}
-
 // What codes between two stand for at most, of those that the volume has.
 class CodeTops {
   public:
@@ -190,6 +177,21 @@ void findTops(const Volume& volume, RayRule rule, RayVolume& rays) {
 
 }  // namespace
 
+LayerNumbers layersOf(std::size_t count,
+                      const std::function<const CodeBlock&(std::size_t)>& blockAt) {
+    LayerNumbers all;
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<int>& layers = all[std::size_t(axis)];
+        for (std::size_t i = 0; i < count; ++i) {
+            const int number = blockAt(i).position[axis];
+            if (layers.empty() || layers.back() != number) layers.push_back(number);
+        }
+        std::sort(layers.begin(), layers.end());
+        layers.erase(std::unique(layers.begin(), layers.end()), layers.end());
+    }
+    return all;
+}
+
 RayVolume makeRayVolume(const Volume& volume, RayRule rule, const ValueMap& map) {
     RayVolume rays;
     rays.box = volume.box;
@@ -198,7 +200,8 @@ RayVolume makeRayVolume(const Volume& volume, RayRule rule, const ValueMap& map)
     if (fromSource) readSource(volume, rule, map, slots, rays);
     rays.blocks = BlockReader(*volume.codes, nullptr, 0, slots).takeBlocks();
     if (fromSource && rule == RayRule::kSum) dropZeros(volume, map, rays.blocks);
-    listLayers(rays);
+    rays.layers = layersOf(rays.blocks.size(),
+                           [&](std::size_t i) -> const CodeBlock& { return rays.blocks[i]; });
     findTops(volume, rule, rays);
     return rays;
 }

@@ -45,6 +45,14 @@ inline constexpr double kLargestRayValue = double(std::numeric_limits<float>::ma
 using BlockValues =
     std::function<void(const CodeBlock& block, int sliceAxis, const ValuePlace& place)>;
 
+/// Along each axis the numbers of blocks, in order, at which there are any.
+using LayerNumbers = std::array<std::vector<int>, 3>;
+
+/// Lists where some blocks lie.
+/// @param blockAt  returns each of `count`
+LayerNumbers layersOf(std::size_t count,
+                      const std::function<const CodeBlock&(std::size_t)>& blockAt);
+
 /// A volume as rays see it: float values, in blocks that can be found.
 struct RayVolume {
     IndexBox box;
@@ -66,8 +74,7 @@ struct RayVolume {
     std::vector<CodeBlock> blocks;
     /// What blocks hold at most, for largest values; else 0 where there is one.
     TopGrid tops;
-    /// Along each axis the numbers of blocks, in order, at which there are any.
-    std::array<std::vector<int>, 3> layers;
+    LayerNumbers layers;
     std::vector<float> table;  ///< [kCodeCount], unless values are direct
 };
 
