@@ -5,15 +5,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "aside_header.h"
 #include "cannot_write.h"
 #include "deltasplat/error.h"
-#include "name_lock.h"
 #include "output_target.h"
 #include "temporary_file.h"
 
@@ -22,8 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void (*commitGate)() = nullptr;
-bool syncFiles = false;
+std::atomic<void (*)()> commitGate = nullptr;
+std::atomic<bool> syncFiles = false;
 
 }  // namespace
 
@@ -103,8 +102,6 @@ struct AtomicFile::Impl {
                S_ISREG(there.st_mode) && there.st_uid == own.st_uid;
     }
 
-    NameInFolder place() const { return {target.folder.get(), target.name}; }
-
     fs::path finalPath;
     OutputTarget target;
     std::optional<TemporaryFile> temporary;
@@ -160,7 +157,7 @@ void AtomicFile::commit() {
     close();
     if (file.target.isDevice || file.committed) return;
     file.prepare();
-    if (commitGate) commitGate();
+    if (const auto gate = commitGate.load()) gate();
     file.requireAt(file.temporary->name());
     const int folder = file.target.folder.get();
     if (::renameat(folder, file.temporary->name().c_str(), folder, file.target.name.c_str()) != 0)
@@ -170,26 +167,14 @@ void AtomicFile::commit() {
     // In a folder that others may write, somebody may have been quicker.
     if (!file.temporary->isAt(file.target.name) && !file.isReplacedByOwn())
         file.requireAt(file.target.name);
-    // The next one who replaces it locks it while it is set aside.
-    file.temporary->unlock();
     file.syncFolder();
 }
 
 void AtomicFile::commitWithData(AtomicFile& data) {
-    Impl &head = *impl_, &described = *data.impl_;
     close();
     data.close();
-    head.prepare();
-    described.prepare();
-    if (head.target.isDevice || described.target.isDevice) {
-        data.commit();
-        return commit();
-    }
-    const NameLock lock(described.place(), data.finalPath());
-    if (commitGate) commitGate();
-    AsideHeader aside(head.place(), *head.temporary, described.place(), *described.temporary,
-                      finalPath());
-    head.syncFolder();
+    impl_->prepare();
+    data.impl_->prepare();
     data.commit();
     commit();
 }

@@ -97,7 +97,7 @@ DeepViewResult renderDeepView(const PictureView& picture, int slicesPerSample, K
         const double next = double(i + 1) / double(cuts.size());
         const Clock::time_point start = Clock::now();
         const Listener rendering = partOf(listener, share, next);
-        SlabRenderer slabs(input, cut.slabs, kAllRows, rendering);
+        SlabRenderer slabs(input, cut.slabs, rendering);
         slabs.run();
         mergeBehind(merged, slabs.merge());
         const double slabSeconds = secondsSince(start);

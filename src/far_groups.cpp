@@ -55,15 +55,6 @@ IndexBox blocksOf(const IndexBox& voxels) {
     return blocks;
 }
 
-// Whether only some slices of the volume are there.
-bool isPart(const CodeTree& codes) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const SlotBlocks* const blocks = codes.blocksAlong(axis);
-        if (blocks && blocks->facts()) return true;
-    }
-    return false;
-}
-
 // The widest gap along an axis that no piece reaches into.
 struct Gap {
     std::int64_t blocks = 0;
@@ -141,7 +132,6 @@ std::optional<FarGroups> FarGroups::find(const Volume& volume, const BlockSet* m
     constexpr double kVoxelsOfBlock = 512;
     constexpr double kWorth = 2;
     if (cost < kLeastCost || kWorth * double(volume.activeCount) / kVoxelsOfBlock > cost) return {};
-    if (isPart(*volume.codes)) return {};
     auto impl = std::make_shared<Impl>(volume);
     impl->listPieces(more);
     if (impl->pieces.empty()) return {};

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "delta/code_blocks.h"
-#include "delta/slab_facts.h"
 #include "optics/joined_classes.h"
 #include "parallel.h"
 #include "picture_view.h"
@@ -111,14 +110,6 @@ JoinedVoxels JoinJudge::firstUnseen(const std::vector<JoinedVoxels>& some,
     constexpr std::size_t kMostKnown = 256;
     if (some.empty()) return {};
     const Volume& volume = *scene.scene.volume;
-    // Where only some slices are there, as of parts of a picture, it was found out when all were.
-    const SlotBlocks* const along = volume.codes->blocksAlong(view.sliceAxis);
-    if (along && along->facts()) {
-        const auto known = std::find_if(some.begin(), some.end(), [&](const JoinedVoxels& one) {
-            return one.slices == along->facts()->joined;
-        });
-        return known != some.end() ? *known : JoinedVoxels();
-    }
     Key key = keyOf(view, volume, some);
     const std::lock_guard lock(mutex_);
     const auto known = known_.find(key);

@@ -60,11 +60,6 @@ void KeptMemory::release(std::multimap<std::size_t, Block>::iterator block) {
     idle_.erase(block);
 }
 
-void KeptMemory::releaseIdle() {
-    const std::lock_guard lock(mutex_);
-    while (!idle_.empty()) release(idle_.begin());
-}
-
 void* KeptMemory::do_allocate(std::size_t bytes, std::size_t alignment) {
     if (bytes < kLeast || alignment > kHead)
         return std::pmr::new_delete_resource()->allocate(bytes, alignment);

@@ -21,8 +21,6 @@ class KeptMemory : public std::pmr::memory_resource {
     /// Says that a picture is done: what it had no use for goes back to the system; where memory is
     /// limited (setMemoryLimit) all does, for what is kept counts as taken.
     void endPicture();
-    /// Gives back all that is kept for the next who asks.
-    void releaseIdle();
     /// Bytes that are kept for the next who asks. Who asks for more than that, in any sizes, makes
     /// what is held grow by no more than the rest.
     std::size_t idleBytes() const;

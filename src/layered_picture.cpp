@@ -120,7 +120,7 @@ Layer LayeredPicture::Impl::render(int slab, const Listener& listener) const {
     const Place& place = placeOf(slab);
     const SlabInput& input = inputOf(place);
     requireMemory("layer of a slab", layerBytes(reachOf(place), input.layout.channels));
-    SlabRenderer renderer(input, {seenOf(place)}, kAllRows, listener);
+    SlabRenderer renderer(input, {seenOf(place)}, listener);
     renderer.run();
     return renderer.merge();
 }

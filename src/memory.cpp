@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
 
-std::uint64_t limit = 0;  // as setMemoryLimit says
+std::atomic<std::uint64_t> limit = 0;  // as setMemoryLimit says
 
 struct OwnMemory {
     std::uint64_t addresses = 0;  // bytes
@@ -37,9 +37,10 @@ OwnMemory ownMemory() {
 }
 
 std::uint64_t limitAvailable() {
-    if (limit == 0) return kNoLimit;
+    const std::uint64_t most = limit;
+    if (most == 0) return kNoLimit;
     const std::uint64_t taken = ownMemory().resident;
-    return limit > taken ? limit - taken : 0;
+    return most > taken ? most - taken : 0;
 }
 
 // What `ulimit -v` leaves.

@@ -33,7 +33,6 @@ glm::dvec2 middleSlope(const Camera& camera, const Factorization& view) {
 Footprint makeViewFootprint(const PreparedScene::Impl& scene, const Camera& camera,
                             const Factorization& view, const SheetPlan& plan) {
     const SplatOptions& options = scene.options;
-    if (plan.resolution() < 1) return makeCoarseFootprint(int(1 / plan.resolution()));
     const int within = plan.partsIn(view).within;
     const double pixels = view.pixelsPerVoxel / within;
     const double sigma = options.sigma.value_or(defaultSigma(pixels, plan.resolution()) / within);
@@ -80,11 +79,6 @@ double planeDensity(const Factorization& view, const IndexBox& box, double sheet
 
 // The covariance of where a voxel is seen in a footprint, in voxels: uu, vv and uv.
 glm::dvec3 covarianceOf(const Footprint& footprint) {
-    // A tent from one pixel's middle to the next.
-    if (footprint.weights.empty()) {
-        const double variance = 1 / (6 * footprint.pixelsPerVoxel() * footprint.pixelsPerVoxel());
-        return {variance, variance, 0};
-    }
     glm::dvec3 products(0);
     for (int y = 0; y < footprint.width; ++y) {
         for (int x = 0; x < footprint.width; ++x) {
@@ -94,7 +88,7 @@ glm::dvec3 covarianceOf(const Footprint& footprint) {
     }
     // Weights of each of the phases add up to one.
     const double phases = footprint.resolution * footprint.resolution;
-    return products / (footprint.one() * phases * phases);
+    return products / (double(Footprint::kOne) * phases * phases);
 }
 
 // What reading sheets between their pixels adds to that: on average, as lines of sight lie anywhere
@@ -150,7 +144,7 @@ SeenCone seenCone(const PreparedScene::Impl& scene, const Camera& camera, const 
     const Subdivision parts = plan.partsIn(view);
     const Factorization thin = subdivided(view, parts);
     const Footprint footprint = makeViewFootprint(scene, camera, view, plan);
-    const double sheetPixels = footprint.pixelsPerVoxel();
+    const double sheetPixels = footprint.resolution;
     const IndexBox box = boxOfSlices(scene.scene.volume->box, view.sliceAxis, parts);
     const double spacing = 1 / planeDensity(thin, box, sheetPixels, parts.within);
     SeenCone cone;
@@ -202,7 +196,7 @@ PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
         const LitScene lit{
             camera,
             scene.scene.volume->worldFromIndex * indexFromThinVoxel(axis_->sliceAxis, axis_->parts),
-            covarianceOf(footprint_) + covarianceOfReading(thinView_, footprint_.pixelsPerVoxel()),
+            covarianceOf(footprint_) + covarianceOfReading(thinView_, footprint_.resolution),
             axis_->sliceAxis};
         std::unique_ptr<const LookLight> light;
         if (painter) light = painter->lightOf(classes, isLit ? &lit : nullptr);
@@ -233,10 +227,10 @@ PlanePlace PictureView::placePlane() const {
     place.firstSlice = layout_.firstSlice;
     place.firstVoxel = layout_.firstVoxel;
     if (view_.eye) {
-        place.spacing = 1 / planeDensity(thinView_, axis_->deltas().box, layout_.pixelsPerVoxel(),
+        place.spacing = 1 / planeDensity(thinView_, axis_->deltas().box, layout_.resolution,
                                          axis_->parts.within);
     } else {
-        place.resolution = layout_.pixelsPerVoxel();
+        place.resolution = layout_.resolution;
         place.offsetPixels = layout_.offsetPixels;
     }
     place.filter = scene_.options.filter;

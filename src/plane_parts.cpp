@@ -49,7 +49,7 @@ class PartFinder {
         const double bytes = layerBytes(reach_, input_.layout.channels) +
                              Splatter::bytes(input_.splat, input_.layout);
         if (bytes <= kMostBytes) return false;
-        const double resolution = std::max(input_.layout.pixelsPerVoxel(), 1.0);
+        const double resolution = input_.layout.resolution;
         const double filled = 64 * resolution * resolution * double(deltas_.words.size());
         const PlaneBox read = bothOf(plane_.readBy(pixels), reach_);
         return pixelsOf(reach_) > std::min(filled, 2 * pixelsOf(read));

@@ -11,7 +11,6 @@
 #include "box_voxels.h"
 #include "default_floats.h"
 #include "delta/code_blocks.h"
-#include "delta/slab_facts.h"
 #include "delta/value_mixer.h"
 #include "deltasplat/error.h"
 #include "medium/room.h"
@@ -222,8 +221,6 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
 
 std::size_t countBlocks(const PreparedScene::Impl& scene, int sliceAxis) {
     const Volume& volume = *scene.scene.volume;
-    const SlotBlocks* const blocks = volume.codes->blocksAlong(sliceAxis);
-    if (blocks && blocks->facts()) return blocks->facts()->blocksSeen;
     const ClassTable classes =
         classify(volume, scene.optics, planeDistance(volume.worldFromIndex, sliceAxis));
     return listBlocks(*volume.codes, sliceAxis, classes.classOfSlot()).size();

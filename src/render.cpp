@@ -12,7 +12,6 @@
 #include "memory.h"
 #include "prepared_axis.h"
 #include "ray_render.h"
-#include "render_frame.h"
 #include "stopwatch.h"
 
 namespace deltasplat {
@@ -73,8 +72,7 @@ std::string modeName(Mode mode) {
     return "composite";
 }
 
-RenderResult renderFrame(const Volume& volume, const RenderOptions& options,
-                         const Listener& listener, const FrameStep* step) {
+RenderResult render(const Volume& volume, const RenderOptions& options, const Listener& listener) {
     const DefaultFloats floats;
     RenderResult result;
     const auto makePicture = [&](const Volume& seen) {
@@ -95,12 +93,8 @@ RenderResult renderFrame(const Volume& volume, const RenderOptions& options,
         const PreparedScene::Impl scene({borrowed, options.optics}, options, true);
         const double sceneSeconds = secondsSince(start);
         if (!options.optics.parts.empty()) makePicture(*scene.scene.volume);
-        if (step) {
-            stats = renderComposite(*step, scene, result.camera, result.image, listener);
-        } else {
-            KeptMemory memory;
-            stats = renderComposite(scene, result.camera, memory, result.image, listener);
-        }
+        KeptMemory memory;
+        stats = renderComposite(scene, result.camera, memory, result.image, listener);
         stats.prepareSeconds += sceneSeconds;
     } else {
         makePicture(volume);
@@ -108,10 +102,6 @@ RenderResult renderFrame(const Volume& volume, const RenderOptions& options,
     }
     listener.report(1);
     return result;
-}
-
-RenderResult render(const Volume& volume, const RenderOptions& options, const Listener& listener) {
-    return renderFrame(volume, options, listener, nullptr);
 }
 
 }  // namespace deltasplat

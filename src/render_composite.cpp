@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -22,9 +21,7 @@
 #include "listener_part.h"
 #include "number_text.h"
 #include "plane_parts.h"
-#include "render_frame.h"
 #include "stopwatch.h"
-#include "view_changes.h"
 
 namespace deltasplat {
 namespace {
@@ -36,16 +33,6 @@ struct Wanted {
     glm::ivec2 first{0};  // pixel of the picture that the image begins with
     const DeepRequest* deep = nullptr;
     std::vector<KeptView>* views = nullptr;
-    const FrameStep* step = nullptr;
-};
-
-// A layer in memory that goes when it does.
-struct HeldLayer {
-    HeldLayer(std::shared_ptr<KeptMemory> of, Layer held)
-        : memory(std::move(of)), layer(std::move(held)) {}
-
-    std::shared_ptr<KeptMemory> memory;
-    Layer layer;
 };
 
 // Of groups that lie far apart.
@@ -77,10 +64,8 @@ class CompositeRender {
         const std::vector<Factorization>& views = plan_->views;
         for (std::size_t i = 0; i < views.size(); ++i) {
             const auto share = [&](double part) { return (double(i) + part) / views.size(); };
-            runView(i, views[i], partOf(listener, share(0), share(1)));
+            runView(views[i], partOf(listener, share(0), share(1)));
         }
-        if (isCompared_ && shown_ > 0) stats_.changed = double(differing_) / double(shown_);
-        if (rows_ > 0) stats_.kept = double(rowsKept_) / double(rows_);
     }
 
     // Who reads an empty volume has been told so.
@@ -102,9 +87,9 @@ class CompositeRender {
     }
 
   private:
-    void runView(std::size_t number, const Factorization& view, const Listener& listener) {
+    void runView(const Factorization& view, const Listener& listener) {
         const Clock::time_point start = Clock::now();
-        const bool isFlat = !wanted_.views && !wanted_.step && !wanted_.deep;
+        const bool isFlat = !wanted_.views && !wanted_.deep;
         std::shared_ptr<const PreparedAxis> axis =
             scene_.axis(view, plan_->sheets, listener, &camera_, isFlat);
         stats_.prepareSeconds += secondsSince(start);
@@ -118,10 +103,6 @@ class CompositeRender {
         countIn(*picture);
         if (wanted_.views) {
             keep(std::move(picture), listener);
-        } else if (wanted_.step) {
-            const std::shared_ptr<const PictureView> shared = std::move(picture);
-            countBound(*shared, showBehind(number, shared, listener));
-            stats_.renderSeconds -= std::exchange(waitedSeconds_, 0);
         } else {
             countBound(*picture,
                        wanted_.deep ? showDeep(*picture, listener) : showFlat(*picture, listener));
@@ -133,7 +114,7 @@ class CompositeRender {
     PicturePart part() const { return {*wanted_.image, wanted_.first, camera_.sizePixels}; }
 
     void keep(std::unique_ptr<const PictureView> picture, const Listener& listener) {
-        Layer merged = renderSlabs(picture->slabs(), kAllRows, partOf(listener, 0.2, 1));
+        Layer merged = renderSlabs(picture->slabs(), partOf(listener, 0.2, 1));
         picture->finish(merged);
         wanted_.views->push_back({std::move(picture), std::move(merged)});
     }
@@ -148,7 +129,7 @@ class CompositeRender {
             if (parts.size() > 1) memory_.endPicture();
             const double share = 0.7 * double(&one - parts.data()) / double(parts.size());
             Layer merged = renderSlabs(
-                slabs, std::move(one.slabs), kAllRows,
+                slabs, std::move(one.slabs),
                 partOf(listener, 0.2 + share, 0.2 + share + 0.7 / double(parts.size())), {});
             gain = std::max(gain, timedWarp([&] { return picture.show(merged, to, one.whole); }));
         });
@@ -187,8 +168,8 @@ class CompositeRender {
                 const auto number = one.slab - input.splat.deltas.slabs.data();
                 return number < parts[i].first || number >= parts[i].last;
             });
-            merged = renderSlabs(input, std::move(seen), kAllRows,
-                                 partOf(listener, share(0), share(1)), std::move(merged));
+            merged = renderSlabs(input, std::move(seen), partOf(listener, share(0), share(1)),
+                                 std::move(merged));
             stats_.renderSeconds += secondsSince(renderStart);
         }
         const Clock::time_point start = Clock::now();
@@ -196,74 +177,6 @@ class CompositeRender {
         listener.report(0.95);
         countBound(*picture, timedWarp([&] { return picture->show(*merged, part()); }));
         stats_.renderSeconds += secondsSince(start);
-    }
-
-    // Leaves what it shows to the frame behind.
-    double showBehind(std::size_t number, const std::shared_ptr<const PictureView>& picture,
-                      const Listener& listener) {
-        KeptFrame& now = wanted_.step->now;
-        now.addView(mayBeKept(*picture) ? picture : nullptr);
-        Layer merged = renderBehind(number, *picture, partOf(listener, 0.2, 0.9));
-        listener.report(0.95);
-        if (picture->showChangesLayer()) {
-            now.addLayer(std::make_shared<const Layer>(merged));
-            return timedWarp([&] { return picture->show(merged, part()); });
-        }
-        const auto kept =
-            std::make_shared<const HeldLayer>(wanted_.step->memory, std::move(merged));
-        now.addLayer({kept, &kept->layer});
-        return timedWarp([&] { return picture->showPart(kept->layer, part()); });
-    }
-
-    // Takes from the frame before what is the same in both.
-    Layer renderBehind(std::size_t number, const PictureView& picture, const Listener& listener) {
-        const SlabInput& slabs = picture.slabs();
-        const std::shared_ptr<KeptFrame>& before = wanted_.step->before;
-        const std::optional<ViewChanges> changes = compareBehind(number, picture);
-        if (!changes) {
-            isCompared_ = false;
-            rows_ += reachOfAll(slabs, seenSlabs(slabs)).size().y;
-            if (before) before->dropLayer(number);
-            return renderSlabs(slabs, kAllRows, listener);
-        }
-        differing_ += changes->differing;
-        shown_ += changes->shown;
-        const glm::ivec2 made = changes->differingRows;
-        const glm::ivec2 all = changes->shownRows;
-        rows_ += std::max(all.y - all.x, 0);
-        if (made.x <= all.x && made.y >= all.y) {
-            before->dropLayer(number);
-            return renderSlabs(slabs, kAllRows, listener);
-        }
-        {
-            Layer merged = renderSlabs(slabs, made, listener);
-            const auto kept = waitFor([&] { return before->takeLayer(number); });
-            if (kept) {
-                const int firstMade = std::min(made.x, all.y);
-                const int lastMade = std::max(made.y, firstMade);
-                merged.takeRows(*kept, all.x, firstMade);
-                merged.takeRows(*kept, lastMade, all.y);
-                rowsKept_ += (all.y - all.x) - (lastMade - firstMade);
-                return merged;
-            }
-        }
-        // Who could not be rendered leaves nothing.
-        return renderSlabs(slabs, kAllRows, listener);
-    }
-
-    std::optional<ViewChanges> compareBehind(std::size_t number, const PictureView& picture) {
-        const std::shared_ptr<KeptFrame>& before = wanted_.step->before;
-        if (!before) return {};
-        const auto view = waitFor([&] { return before->takeView(number); });
-        return view ? compareViews(*view, picture) : std::nullopt;
-    }
-
-    template <typename Take>
-    std::invoke_result_t<Take> waitFor(const Take& take) {
-        const Clock::time_point start = Clock::now();
-        auto taken = take();
-        waitedSeconds_ += secondsSince(start);
-        return taken;
     }
 
     template <typename Show>
@@ -325,7 +238,7 @@ class CompositeRender {
 
     void countIn(const PictureView& picture) {
         const Footprint& footprint = picture.footprint();
-        stats_.resolution = footprint.pixelsPerVoxel() * picture.axis().parts.per().y;
+        stats_.resolution = footprint.resolution * picture.axis().parts.per().y;
         stats_.footprint = std::max(stats_.footprint, footprint.width);
     }
 
@@ -335,15 +248,14 @@ class CompositeRender {
         stats_.errorBoundAlpha = std::max(stats_.errorBoundAlpha, bound.alpha * gain);
     }
 
-    // @param rows  of the base plane
-    Layer renderSlabs(const SlabInput& input, glm::ivec2 rows, const Listener& listener) {
-        return renderSlabs(input, seenSlabs(input), rows, listener, {});
+    Layer renderSlabs(const SlabInput& input, const Listener& listener) {
+        return renderSlabs(input, seenSlabs(input), listener, {});
     }
 
-    Layer renderSlabs(const SlabInput& input, std::vector<SeenSlab> seen, glm::ivec2 rows,
-                      const Listener& listener, std::optional<Layer> front) {
+    Layer renderSlabs(const SlabInput& input, std::vector<SeenSlab> seen, const Listener& listener,
+                      std::optional<Layer> front) {
         const Clock::time_point start = Clock::now();
-        SlabRenderer slabs(input, std::move(seen), rows, listener, std::move(front));
+        SlabRenderer slabs(input, std::move(seen), listener, std::move(front));
         slabs.run();
         const double slabSeconds = secondsSince(start);
         Layer merged = slabs.merge();
@@ -361,14 +273,6 @@ class CompositeRender {
     const Wanted& wanted_;
     RenderStats& stats_;
     std::optional<ViewPlan> plan_;
-    // Of rows of blocks compared with the frame before.
-    bool isCompared_ = true;
-    std::uint64_t differing_ = 0;
-    std::uint64_t shown_ = 0;
-    // Of base planes that were.
-    std::int64_t rows_ = 0;
-    std::int64_t rowsKept_ = 0;
-    double waitedSeconds_ = 0;  // for the frame before
 };
 
 // Renders groups of voxels that lie far apart, each behind those before it.
@@ -490,15 +394,6 @@ RenderStats renderComposite(const PreparedScene::Impl& scene, const Camera& came
                             KeptMemory& memory, Image& image, const Listener& listener,
                             const DeepRequest* deep) {
     return renderAs({.image = &image, .deep = deep}, scene, camera, memory, listener);
-}
-
-RenderStats renderComposite(const FrameStep& step, const PreparedScene::Impl& scene,
-                            const Camera& camera, Image& image, const Listener& listener) {
-    const RenderStats stats =
-        renderAs({.image = &image, .step = &step}, scene, camera, *step.memory, listener);
-    // What is held from now on is a layer, at most.
-    step.memory->releaseIdle();
-    return stats;
 }
 
 RenderStats renderKept(const PreparedScene::Impl& scene, const Camera& camera, KeptMemory& memory,

@@ -14,10 +14,6 @@ namespace {
 // domain).
 class Digest {
   public:
-    Digest() = default;
-    /// Goes on with what value() has told.
-    explicit Digest(std::uint64_t value) : state_(value) {}
-
     void add(std::uint64_t word) {
         state_ = (state_ ^ word) * 0xff51afd7ed558ccdULL;
         state_ ^= state_ >> 32;
@@ -56,18 +52,13 @@ std::uint64_t digestOfSlice(const PackedDeltas& deltas, std::size_t slice) {
 
 }  // namespace
 
-std::uint64_t digestOfWords(const PictureView& view) {
+std::uint64_t digestOf(const PictureView& view) {
     const PackedDeltas& deltas = view.axis().deltas();
     const std::size_t slices = deltas.begins.empty() ? 0 : deltas.begins.size() - 1;
     std::vector<std::uint64_t> ofSlices(slices);
     parallelFor(slices, [&](std::size_t i) { ofSlices[i] = digestOfSlice(deltas, i); });
     Digest digest;
     for (const std::uint64_t slice : ofSlices) digest.add(slice);
-    return digest.value();
-}
-
-std::uint64_t digestOf(const PictureView& view, std::uint64_t words) {
-    Digest digest(words);
     const ClassTable& table = view.slabs().splat.colors.classes();
     for (const ClassTable::Plane& plane : table.planes) {
         addColors(plane.high, digest);

@@ -43,17 +43,6 @@ void checkMostJoined(int most) {
                             "a power of two, at most " + std::to_string(kMostJoined)));
 }
 
-// Voxels that share a sheet pixel have a kernel of its width.
-void checkKernel(const SplatOptions& options) {
-    if (options.resolution.value_or(1) >= 1 || (!options.sigma && !options.footprintWidth)) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected(options.sigma ? "`sigma`" : "footprint width",
-                            (options.sigma ? numberText(*options.sigma)
-                                           : std::to_string(*options.footprintWidth)) +
-                                " with a `resolution` below 1",
-                            "none: voxels that share a sheet pixel have a kernel of its width"));
-}
-
 [[noreturn]] void throwTooWide(const IndexBox& box, int between) {
     const glm::ivec3 dims = box.dims();
     throw Error(ErrorCode::kFailed,
@@ -186,7 +175,6 @@ SheetPlan::SheetPlan(const PreparedScene::Impl& scene, const Camera& camera,
       resolution_(view.resolution) {
     const IndexBox& box = scene.scene.volume->box;
     const SplatOptions& options = scene.options;
-    checkKernel(options);
     checkMostJoined(options.mostJoined);
     int between = 0;
     // What is thin shows nothing else with more sheet pixels, while it is not smoothed.

@@ -71,20 +71,16 @@ bool TemporaryFile::create(const std::string& name, mode_t mode) {
     }
     file_ = std::move(file);
     name_ = name;
-    place_ = listTemporary({folder_, name_});
+    entry_ = listTemporary({folder_, name_});
     return true;
 }
 
 bool TemporaryFile::isAt(const std::string& name) const {
-    return deltasplat::isAt(identity(), folder_, name.c_str());
-}
-
-void TemporaryFile::unlock() const {
-    ::flock(file_.get(), LOCK_UN);
+    return deltasplat::isAt(identityOf(file_.get()), folder_, name.c_str());
 }
 
 void TemporaryFile::release() {
-    unlist(std::exchange(place_, -1));
+    unlist(std::exchange(entry_, nullptr));
     name_.clear();
 }
 

@@ -31,14 +31,10 @@ class TemporaryFile {
 
     const std::string& name() const { return name_; }
     int descriptor() const { return file_.get(); }
-    FileIdentity identity() const { return identityOf(file_.get()); }
     /// Returns whether a name in the folder is of this very file.
     bool isAt(const std::string& name) const;
-    /// Says that the file now has another name, or none: there is nothing to remove. It stays
-    /// locked.
+    /// Says that the file now has another name, or none: there is nothing to remove.
     void release();
-    /// Lets others lock the file in their turn, after release().
-    void unlock() const;
 
   private:
     bool create(const std::string& name, mode_t mode);
@@ -46,7 +42,7 @@ class TemporaryFile {
     int folder_;
     std::string name_;
     Descriptor file_;
-    int place_ = -1;  // in the list of all temporary files
+    TemporaryEntry* entry_ = nullptr;  // in the list of all temporary files
 };
 
 }  // namespace deltasplat

@@ -28,28 +28,13 @@ struct NameInFolder {
     const std::string& name;
 };
 
-/// A header about to be replaced together with the data file that it describes. Its old file gets
-/// the name `aside`, which is a placeholder's until then; its new one has the name `fresh`.
-struct HeaderChange {
-    NameInFolder header;
-    const std::string& aside;
-    FileIdentity placeholder;
-    const std::string& fresh;
-    FileIdentity freshFile;
-    NameInFolder data;
-    FileIdentity freshData;
-};
+/// A place in the list of temporary files.
+struct TemporaryEntry;
 
-/// What the process has to tidy up when it ends without destroying its objects, in a form that
-/// signal handlers can read (removeTemporaryFiles() in atomic_file.h). Returns a place in the list;
-/// -1 if that is full.
-int listTemporary(const NameInFolder& file);
-int listHeaderChange(const HeaderChange& change);
-/// Takes a place off the list. -1: does nothing.
-void unlist(int place) noexcept;
-/// Brings a change of a header to its end, and takes it off the list: if the data file has been
-/// replaced, the new header gets its name and the old one is removed; if not, the old one gets its
-/// name back. -1: does nothing.
-void settleHeaderChange(int place) noexcept;
+/// Notes a file that has to be removed when the process ends without destroying its objects, in a
+/// form that signal handlers can read (removeTemporaryFiles() in atomic_file.h).
+TemporaryEntry* listTemporary(const NameInFolder& file);
+/// Takes an entry off the list. Null: does nothing.
+void unlist(TemporaryEntry* entry) noexcept;
 
 }  // namespace deltasplat

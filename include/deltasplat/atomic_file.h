@@ -50,10 +50,8 @@ class AtomicFile {
     /// whatever the commit gate throws
     void commit();
     /// Gives first a data file and then this one, its header, their final names, after close() of
-    /// both. No header describes another data file's content at any time: the old header is taken
-    /// away before, and put back if the data file cannot be replaced, and others who write the same
-    /// data file this way wait. However the process ends, short of being killed, the old two are
-    /// there or the new two.
+    /// both: all that may take long or fail is done before either name changes. Who is killed
+    /// between the two renames leaves the old header beside the new data file.
     /// @throw Error(kOutput), whatever the commit gate throws: as commit()
     void commitWithData(AtomicFile& data);
     /// Whether the file has got its final name.
@@ -69,15 +67,15 @@ class AtomicFile {
 void writeFileAtomically(const std::filesystem::path& file, std::string_view bytes);
 
 /// Sets what is called right before any file gets its final name or loses it; nullptr: nothing. It
-/// may throw to keep that from happening. For the whole process, not thread-safe.
+/// may throw to keep that from happening. For the whole process; thread-safe.
 void setCommitGate(void (*gate)());
 
 /// Sets whether files, and their new names, are on the disk before commit() returns, so that they
-/// outlive a power failure. For the whole process, not thread-safe. Off by default.
+/// outlive a power failure. For the whole process; thread-safe. Off by default.
 void setSyncFiles(bool sync);
 
-/// Removes the temporary files of all AtomicFiles, and brings what commitWithData() has begun to
-/// its end: for who ends the process without destroying them. May be called by a signal handler.
+/// Removes the temporary files of all AtomicFiles: for who ends the process without destroying
+/// them. May be called by a signal handler.
 void removeTemporaryFiles() noexcept;
 
 }  // namespace deltasplat

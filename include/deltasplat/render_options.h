@@ -124,10 +124,6 @@ struct RenderStats {
     /// a tolerance, infinity where it is not known, as of joined slices (docs/method.md).
     double errorBoundColor = 0;
     double errorBoundAlpha = 0;
-    /// Share of what the frame before shows, or this one, that is not the same (FrameChain), 0..1,
-    /// in rows of blocks of slabs; empty: there was none to compare with.
-    std::optional<double> changed;
-    double kept = 0;  ///< share of the rows of pixels that were taken from the frame before
 };
 
 }  // namespace deltasplat

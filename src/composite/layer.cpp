@@ -44,19 +44,6 @@ void Layer::clearRest() {
     });
 }
 
-void Layer::takeRows(const Layer& other, int first, int last) {
-    for (int y = first; y < last; ++y) {
-        const auto row = std::size_t(y - box.min.y);
-        const glm::ivec2 span = other.spans[row];
-        spans[row] = span;
-        if (span.x >= span.y) continue;
-        const std::size_t begin =
-            std::size_t(channels) * (row * std::size_t(box.size().x) + std::size_t(span.x));
-        const std::size_t count = std::size_t(channels) * std::size_t(span.y - span.x);
-        std::copy_n(&other.values[begin], count, &values[begin]);
-    }
-}
-
 void mergeRowBehind(Layer& front, const LayerRow& row, int y) {
     const glm::ivec2 span = row.span;
     if (span.x >= span.y) return;

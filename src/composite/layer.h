@@ -48,8 +48,6 @@ struct Layer {
     void clearRest(int y);
     /// The same of all rows, on all threads.
     void clearRest();
-    /// Takes rows [first, last), all zero here, from a layer of the same box and channels.
-    void takeRows(const Layer& other, int first, int last);
     float* pixel(glm::ivec2 b) {
         const glm::ivec2 p = b - box.min;
         return &values[channels * (std::size_t(p.y) * box.size().x + p.x)];

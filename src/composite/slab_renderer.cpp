@@ -60,7 +60,7 @@ PlaneBox reachOfAll(const SlabInput& input, const std::vector<SeenSlab>& seen) {
     return all;
 }
 
-SlabRenderer::SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen, glm::ivec2 rows,
+SlabRenderer::SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen,
                            const Listener& listener, std::optional<Layer> front)
     : input_(input),
       progress_(listener),
@@ -68,11 +68,10 @@ SlabRenderer::SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen, g
       seen_(std::move(seen)),
       hasFront_(front.has_value()),
       reach_(front ? front->box : reachOfAll(input, seen_)),
-      rows_(glm::clamp(rows, reach_.min.y, std::max(reach_.min.y, reach_.max.y))),
       merged_(front ? std::move(*front) : Layer({}, channels_, input.memory)) {
     const ClassTable& table = input.splat.colors.table();
     for (int plane = 0; plane < int(table.planes.size()); ++plane)
-        scales_.emplace_back(table.scaleOf(plane) / input.splat.footprint.one());
+        scales_.emplace_back(table.scaleOf(plane) / double(Footprint::kOne));
     for (const SeenSlab& one : seen_) slices_ += one.slab->sliceCount;
     if (seen_.empty() || reach_.empty()) return;
     cutIntoStrips();
@@ -141,7 +140,7 @@ int SlabRenderer::stripCount() const {
     const std::size_t slabs = seen_.size();
     const std::size_t forThreads =
         threads == 1 ? 1 : (kPiecesPerThread * threads + slabs / 2) / slabs;
-    const int rows = rows_.y - rows_.x;
+    const int rows = reach_.size().y;
     const int columns = drawsRuns() ? reach_.size().x : input_.layout.sizePixels.x;
     const double pixels = double(columns) * rows;
     const double pixelBytes = 2.0 * sizeof(float) * channels_;
@@ -190,8 +189,8 @@ std::vector<double> SlabRenderer::workOfRows() const {
     // Of what a row with a fair share of the words costs, one without any.
     constexpr double kEmptyRow = 0.1;
     const std::size_t step = std::max<std::size_t>(1, input_.splat.deltas.words.size() / kSamples);
-    const PlaneBox part{{reach_.min.x, rows_.x}, {reach_.max.x, rows_.y}};
-    std::vector<double> work(std::size_t(rows_.y - rows_.x) + 1);  // by how much each has more
+    const int first = reach_.min.y;
+    std::vector<double> work(std::size_t(reach_.size().y) + 1);  // by how much each has more
     double all = 0;
     std::size_t next = 0;
     for (const SeenSlab& seen : seen_) {
@@ -202,10 +201,10 @@ std::vector<double> SlabRenderer::workOfRows() const {
                 for (; next < words.size(); next += step) {
                     const glm::ivec2 reached = pixelsReached(
                         input_.layout, words[next].block.x - (input_.layout.firstVoxel.y >> 3));
-                    const glm::ivec2 rows = readersOf(reading, 1, reached.x, reached.y, part);
+                    const glm::ivec2 rows = readersOf(reading, 1, reached.x, reached.y, reach_);
                     if (rows.x >= rows.y) continue;
-                    work[std::size_t(rows.x - rows_.x)] += 1;
-                    work[std::size_t(rows.y - rows_.x)] -= 1;
+                    work[std::size_t(rows.x - first)] += 1;
+                    work[std::size_t(rows.y - first)] -= 1;
                     all += rows.y - rows.x;
                 }
             }
@@ -226,23 +225,24 @@ std::vector<int> SlabRenderer::edgesOfStrips() const {
     constexpr int kManyForThread = 8;
     const int leastRows = std::max(32, travel());
     const int count = stripCount();
-    const int rows = rows_.y - rows_.x;
-    std::vector<int> edges(std::size_t(count) + 1, rows_.y);
+    const int first = reach_.min.y;
+    const int end = reach_.max.y;
+    std::vector<int> edges(std::size_t(count) + 1, end);
     for (int i = 0; i < count; ++i)
-        edges[std::size_t(i)] = rows_.x + int(std::int64_t{rows} * i / count);
+        edges[std::size_t(i)] = first + int(std::int64_t{end - first} * i / count);
     const int threads = threadCount();
     if (count == 1 || threads == 1 || count >= kManyForThread * threads) return edges;
     const std::vector<double> work = workOfRows();
     double left = std::accumulate(work.begin(), work.end(), 0.0);
-    int row = rows_.x;
+    int row = first;
     for (int i = 0; i + 1 < count; ++i) {
         // Those behind need their rows as well.
-        const int last = rows_.y - leastRows * (count - 1 - i);
+        const int last = end - leastRows * (count - 1 - i);
         const int least = std::min(row + leastRows, last);
         const double wanted = left / (count - i);
         double ofStrip = 0;
         while (row < least || (row < last && ofStrip < wanted))
-            ofStrip += work[std::size_t(row++ - rows_.x)];
+            ofStrip += work[std::size_t(row++ - first)];
         left -= ofStrip;
         edges[std::size_t(i) + 1] = row;
     }
@@ -250,7 +250,6 @@ std::vector<int> SlabRenderer::edgesOfStrips() const {
 }
 
 void SlabRenderer::cutIntoStrips() {
-    if (rows_.y <= rows_.x) return;
     const std::vector<int> edges = edgesOfStrips();
     for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
         const PlaneBox part{{reach_.min.x, edges[i]}, {reach_.max.x, edges[i + 1]}};
@@ -311,8 +310,8 @@ void SlabRenderer::requireSlabMemory() const {
     if (!input_.plane.isParallel()) bytes += layerBytes(reach_, 1);
     // What is kept is there already.
     bytes = std::max(0.0, bytes - double(input_.memory.idleBytes()));
-    requireMemory(
-        "sheets and layers at " + numberText(largest_.pixelsPerVoxel()) + " pixels a voxel", bytes);
+    requireMemory("sheets and layers at " + std::to_string(largest_.resolution) + " pixels a voxel",
+                  bytes);
 }
 
 // The front slab goes straight into the merged layer if nothing lies before it, the others into

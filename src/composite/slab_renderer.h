@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <glm/vec2.hpp>
-#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -45,10 +44,6 @@ struct SeenSlab {
     PlaneBox box = {};
 };
 
-/// All rows of a base plane, [x, y).
-inline constexpr glm::ivec2 kAllRows{std::numeric_limits<int>::min(),
-                                     std::numeric_limits<int>::max()};
-
 /// Returns the slabs of which something may be seen, from the front on.
 std::vector<SeenSlab> seenSlabs(const SlabInput& input);
 /// Returns the base plane's part that one of them reaches.
@@ -62,12 +57,11 @@ PlaneBox reachOfAll(const SlabInput& input, const std::vector<SeenSlab>& seen);
 class SlabRenderer {
   public:
     /// @param seen   which, from the front on
-    /// @param rows   of the base plane, which become the same as among all; others stay zero
     /// @param front  what lies before them, and reaches all that they do; bits are then those of
     ///               rendering all at once
     /// @throw Error(kFailed) if sheets and layers do not fit into memory
-    SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen, glm::ivec2 rows,
-                 const Listener& listener, std::optional<Layer> front = {});
+    SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen, const Listener& listener,
+                 std::optional<Layer> front = {});
 
     /// Renders the slabs, from the front on.
     void run();
@@ -128,7 +122,6 @@ class SlabRenderer {
     std::vector<SeenSlab> seen_;        // from the front on
     bool hasFront_;                     // before them
     PlaneBox reach_;                    // of all of them
-    glm::ivec2 rows_;                   // of these, that are rendered
     std::optional<StepLengths> steps_;  // from an eye, of colours
     std::vector<Strip> strips_;
     SheetLayout largest_;  // holds the part of any piece

@@ -16,7 +16,6 @@
 #include "delta/column_packer.h"
 #include "delta/joined_tiles.h"
 #include "delta/mixed_sight.h"
-#include "delta/slab_facts.h"
 #include "delta/slice_joiner.h"
 #include "delta/slot_holder.h"
 #include "deltasplat/error.h"
@@ -100,26 +99,6 @@ std::vector<PackedColumns*> inOrder(std::vector<ColumnPacker>& packers, const Ro
         first = last;
     }
     return columns;
-}
-
-// Returns the plan of all of a volume, also where only some of its slices are there.
-// @param box  of the slices
-SlabPlan planOf(const Volume& volume, const PackOptions& options, const IndexBox& box,
-                const SlabPlanner& planner) {
-    const SlotBlocks* const blocks = volume.codes->blocksAlong(options.sliceAxis);
-    const SlabFacts* const facts = blocks ? blocks->facts() : nullptr;
-    if (!facts) return planner.plan(options.encoding, options.slabLength);
-    SlabPlan plan{planner.shortest(), facts->slabs};
-    const bool fits = facts->blocksPerSlab % plan.layout.blocksPerSlab == 0;
-    plan.layout.blocksPerSlab = facts->blocksPerSlab;
-    // They may come from anywhere.
-    if (!fits || plan.layout.count() != int(plan.slabs.size())) {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(facts->file, "facts of another picture", "those of this one"));
-    }
-    for (int i = 0; i < plan.layout.count(); ++i)
-        placeSlab(box, plan.layout, i, plan.slabs[std::size_t(i)]);
-    return plan;
 }
 
 }  // namespace
@@ -297,7 +276,7 @@ struct DeltaPacker::Impl {
     void collect(std::vector<ColumnPacker>& packers, SlabPlanner& planner,
                  PackedDeltas& packed) const {
         for (const ColumnPacker& packer : packers) planner.add(packer.planner());
-        SlabPlan plan = planOf(volume, options, packed.box, planner);
+        SlabPlan plan = planner.plan(options.encoding, options.slabLength);
         packed.slabs = std::move(plan.slabs);
         collectWords(columnsOf(packers), plan.layout, options.painter != nullptr, packed);
     }
@@ -401,7 +380,7 @@ PackedDeltas DeltaPacker::packOrPlan(double mostBytes) {
         return packed;
     }
     for (const ColumnPacker& packer : packers) planner.add(packer.planner());
-    impl_->planned = planOf(impl_->volume, impl_->options, packed.box, planner);
+    impl_->planned = planner.plan(impl_->options.encoding, impl_->options.slabLength);
     packed.slabs = impl_->planned.slabs;
     packed.begins.assign(std::size_t(packed.box.dims().x) + 1, 0);
     double bytes = 0;

@@ -99,7 +99,7 @@ std::optional<StreamCodes> streamCodes(const std::vector<const Leaf*>& leaves,
                                        const std::vector<std::size_t>& begins,
                                        const DeltaHeader& header) {
     if (!mayDecodeBlocks(header) || !header.inactiveValues.empty()) return std::nullopt;
-    const BlockLayout layout(header, std::nullopt);
+    const BlockLayout layout(header);
     const SlotRules rules = slotRulesOf(header);
     const std::string where = "packed deltas";
     const ColumnDecoder::Grid grid{header, layout, rules, where};

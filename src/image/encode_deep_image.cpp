@@ -12,11 +12,11 @@
 #include <type_traits>
 #include <vector>
 
+#include "image/exr_files.h"
 #include "image/exr_header.h"
 #include "image/exr_stream.h"
 #include "image/seen_box.h"
 #include "image/stored_samples.h"
-#include "modules/exr_module.h"
 #include "parallel.h"
 
 namespace deltasplat {
@@ -124,8 +124,8 @@ void writeBands(const DeepImage& image, const PixelBox& box, Imf::Header header,
 
 }  // namespace
 
-std::string exr_module::encodeDeepImage(const std::filesystem::path& file, const DeepImage& image,
-                                        const ImageFileOptions& options) {
+std::string encodeDeepExr(const std::filesystem::path& file, const DeepImage& image,
+                          const ImageFileOptions& options) {
     const PixelBox box =
         storedBox(options, image.size, [&](const PixelBox& part) { return seenBox(image, part); });
     ExrMemoryStream memory(file);

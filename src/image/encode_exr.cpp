@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "image/exr_files.h"
 #include "image/exr_header.h"
 #include "image/exr_pixels.h"
 #include "image/exr_stream.h"
 #include "image/seen_box.h"
-#include "modules/exr_module.h"
 
 namespace deltasplat {
 namespace {
@@ -72,8 +72,8 @@ void writeParts(std::vector<Part>& parts, int rows, Imf::OStream& to) {
 
 }  // namespace
 
-std::string exr_module::encodeExr(const std::filesystem::path& file, const Image& image,
-                                  const ImageFileOptions& options) {
+std::string encodeExr(const std::filesystem::path& file, const Image& image,
+                      const ImageFileOptions& options) {
     const PixelBox box = storedBox(options, image.size, [&](const PixelBox& part) {
         return seenBox(image, part, options.channels);
     });

@@ -5,10 +5,10 @@
 
 #include "cannot_write.h"
 #include "deltasplat/atomic_file.h"
+#include "image/exr_files.h"
 #include "image/exr_header.h"
 #include "image/exr_pixels.h"
 #include "image/exr_stream.h"
-#include "modules/exr_module.h"
 
 namespace deltasplat {
 namespace {
@@ -61,9 +61,8 @@ class RowsFile : public ExrRowsFile {
 
 }  // namespace
 
-std::unique_ptr<ExrRowsFile> exr_module::openExrRows(const std::filesystem::path& file,
-                                                     glm::ivec2 sizePixels, const PixelBox& box,
-                                                     const ImageFileOptions& options) {
+std::unique_ptr<ExrRowsFile> openExrRows(const std::filesystem::path& file, glm::ivec2 sizePixels,
+                                         const PixelBox& box, const ImageFileOptions& options) {
     return std::make_unique<RowsFile>(file, sizePixels, box, options);
 }
 

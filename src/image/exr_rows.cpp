@@ -6,7 +6,7 @@
 #include "default_floats.h"
 #include "deltasplat/error.h"
 #include "dims_text.h"
-#include "modules/exr_module.h"
+#include "image/exr_files.h"
 
 namespace deltasplat {
 
@@ -29,7 +29,7 @@ ExrRows::ExrRows(const std::filesystem::path& file, glm::ivec2 sizePixels, const
     checkImageFile(file, sizePixels, stored);
     impl_ = std::make_unique<Impl>();
     impl_->box = box;
-    impl_->file = exrModule().openExrRows(file, sizePixels, box, stored);
+    impl_->file = openExrRows(file, sizePixels, box, stored);
 }
 ExrRows::~ExrRows() = default;
 

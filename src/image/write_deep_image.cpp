@@ -7,8 +7,8 @@
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "dims_text.h"
+#include "image/exr_files.h"
 #include "memory.h"
-#include "modules/exr_module.h"
 
 namespace deltasplat {
 namespace {
@@ -43,7 +43,7 @@ std::string encodeDeepImage(const std::filesystem::path& file, const DeepImage& 
     const double sampleBytes = options.floatExr ? 24 : 16;
     requireMemory(file.string() + ", " + std::to_string(image.samples()) + " samples",
                   kEncodedCopies * sampleBytes * double(image.samples()));
-    return exrModule().encodeDeepImage(file, image, options);
+    return encodeDeepExr(file, image, options);
 }
 
 void writeDeepImage(const std::filesystem::path& file, const DeepImage& image,

@@ -10,9 +10,9 @@
 #include "dims_text.h"
 #include "image/encode_numbers.h"
 #include "image/encode_png.h"
+#include "image/exr_files.h"
 #include "image/quantize.h"
 #include "lower_case.h"
-#include "modules/exr_module.h"
 #include "modules/image_module.h"
 
 namespace deltasplat {
@@ -127,7 +127,7 @@ std::string encodeImage(const std::filesystem::path& file, const Image& image,
         throw Error(ErrorCode::kUsage, gotExpected(file.string(), got, "at least 1x1"));
     }
     const ImageFormat format = imageFormatOf(file);
-    if (format == ImageFormat::kExr) return exrModule().encodeExr(file, image, options);
+    if (format == ImageFormat::kExr) return encodeExr(file, image, options);
     if (isOfNumbers(format)) return encodeNumbers(file, image, options);
     // The one format that nothing is loaded for, and that is packed by all threads.
     if (format == ImageFormat::kPng) {

@@ -61,10 +61,15 @@ void readVoxels(const Volume& volume, const IndexBox& box, std::span<double> val
     if (!active.empty()) requireSize("active", active.size());
     if (voxels == 0) return;
     if (volume.source) {
-        volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
+        const bool isScalar = volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
             readTree(
                 tree, volume, box, [](auto value) { return double(value); }, values, active);
         });
+        if (!isScalar) {
+            throw Error(ErrorCode::kUsage,
+                        gotExpected("voxels to read", "type " + volume.source->grid.type(),
+                                    "a scalar grid"));
+        }
     } else if (volume.codes) {
         readTree(
             volume.codes->tree(), volume, box,

@@ -7,11 +7,6 @@ ClassLight::ClassLight(const ClassTable& classes)
     : LookLight(VoxelUnits(classes, brightestOf(classes))),
       colors_(units().unitsOfClasses(classes)) {}
 
-bool ClassLight::isLike(const LookLight& other) const {
-    const auto* same = dynamic_cast<const ClassLight*>(&other);
-    return same && units() == same->units() && colors_ == same->colors_;
-}
-
 void ClassLight::lightVoxels(const WordPlace&, const std::uint16_t* classes, const OwnLook*,
                              WordUnits& colors) const {
     for (std::size_t n = 0; n < 64; ++n)

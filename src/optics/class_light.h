@@ -12,7 +12,6 @@ namespace deltasplat {
 class ClassLight : public LookLight {
   public:
     explicit ClassLight(const ClassTable& classes);
-    bool isLike(const LookLight& other) const override;
 
   protected:
     void lightVoxels(const WordPlace& place, const std::uint16_t* classes, const OwnLook* looks,

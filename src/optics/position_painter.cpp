@@ -16,9 +16,6 @@ namespace {
 class OwnColors : public LookLight {
   public:
     explicit OwnColors(const ClassTable& classes) : LookLight(VoxelUnits(classes, glm::dvec3(1))) {}
-    bool isLike(const LookLight& other) const override {
-        return dynamic_cast<const OwnColors*>(&other) && units() == other.units();
-    }
 
   protected:
     void lightVoxels(const WordPlace&, const std::uint16_t* classes, const OwnLook* looks,

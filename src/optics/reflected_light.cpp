@@ -73,12 +73,6 @@ ReflectedLight::ReflectedLight(const Shading& shading, const ClassTable& classes
     if (reflection_.fromEye) eye_.emplace(camera.eyeWorld(), scene.worldFromVoxel);
 }
 
-bool ReflectedLight::isLike(const LookLight& other) const {
-    const auto* same = dynamic_cast<const ReflectedLight*>(&other);
-    return same && units() == same->units() && reflection_ == same->reflection_ &&
-           colors_ == same->colors_ && eye_ == same->eye_;
-}
-
 void ReflectedLight::lightVoxels(const WordPlace& place, const std::uint16_t* classes,
                                  const OwnLook* looks, WordUnits& colors) const {
     WordToLight word{colors_.data(), classes, looks, nullptr};

@@ -16,7 +16,6 @@ class ReflectedLight : public LookLight {
     /// @param isSolid  whether gradients point out of something, whose surface is all that is seen
     ReflectedLight(const Shading& shading, const ClassTable& classes, const LitScene& scene,
                    bool isSolid = false);
-    bool isLike(const LookLight& other) const override;
 
   protected:
     void lightVoxels(const WordPlace& place, const std::uint16_t* classes, const OwnLook* looks,

@@ -76,9 +76,6 @@ class LookLight {
     double dimmest() const { return dimmest_; }
     /// Whether there may be something next to what is brightest that one plane cannot tell.
     bool isFine() const { return isFine_; }
-    /// Whether the other shows whatever has the same class and look as the same, wherever it is;
-    /// false where that is not known.
-    virtual bool isLike(const LookLight&) const { return false; }
     /// Returns the premultiplied colours of a word's voxels; what those get that cannot be seen is
     /// of no consequence.
     /// @param classes  [64]

@@ -300,7 +300,7 @@ int tapsOf(const Footprint& footprint) {
     // Those that reach a cell's first pixel from before, and its last one from behind.
     const int before = (footprint.width - 1 - footprint.reach()) / r;
     const int behind = (r - 1 + footprint.reach()) / r;
-    if (footprint.voxelsPerPixel > 1 || r > 4 || (r == 1 && footprint.width % 2 == 0)) return 0;
+    if (r > 4 || (r == 1 && footprint.width % 2 == 0)) return 0;
     if (r > 1 && before <= 1 && behind <= 2) return 4;
     if (r <= 2 && before <= 2 && behind <= 2) return 5;
     if (r > 1 && before <= 2 && behind <= 3) return 6;

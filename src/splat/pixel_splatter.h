@@ -14,9 +14,7 @@ namespace deltasplat {
 /// colours of voxels, both digits at once, to the pixels that they have.
 class PixelSplatter {
   public:
-    static bool fits(const Footprint& footprint) {
-        return footprint.width == 1 && footprint.voxelsPerPixel == 1;
-    }
+    static bool fits(const Footprint& footprint) { return footprint.width == 1; }
 
     /// Bytes that one takes, of a footprint that fits, without its sheet.
     static double bytes(const SplatInput& input, const SheetLayout& layout);

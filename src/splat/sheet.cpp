@@ -45,7 +45,6 @@ void requireCountable(const SheetLayout& layout) {
 SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int channels) {
     SheetLayout layout;
     layout.resolution = footprint.resolution;
-    layout.voxelsPerPixel = footprint.voxelsPerPixel;
     layout.reachPixels = footprint.reach();
     layout.footprintPixels = footprint.width;
     layout.offsetPixels = footprint.offsetPixels();
@@ -54,15 +53,10 @@ SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int cha
     // occupied ones.
     layout.marginPixels = roundUpToTile(footprint.reach()) + kTilePixels;
     layout.firstSlice = box.min.x;
-    // As many blocks together as begin with a tile.
-    const int group = layout.voxelsPerPixel;
-    const auto groupOf = [&](int v, int u) {
-        return glm::ivec2(floorDiv(v, 8 * group), floorDiv(u, 8 * group));
-    };
-    const glm::ivec2 first = groupOf(box.min.z, box.min.y);
-    const glm::i64vec2 blocks = std::int64_t{group} * (glm::i64vec2(groupOf(box.max.z, box.max.y)) -
-                                                       glm::i64vec2(first) + std::int64_t{1});
-    layout.firstVoxel = 8 * group * first;
+    const glm::ivec2 first = glm::ivec2(box.min.z, box.min.y) >> 3;
+    const glm::ivec2 last = glm::ivec2(box.max.z, box.max.y) >> 3;
+    const glm::i64vec2 blocks = glm::i64vec2(last) - glm::i64vec2(first) + std::int64_t{1};
+    layout.firstVoxel = 8 * first;
     const glm::i64vec2 size =
         std::int64_t{layout.blockPixels()} * blocks + std::int64_t{2 * layout.marginPixels};
     const std::int64_t slices = std::int64_t{box.max.x} - box.min.x + 1;
@@ -95,13 +89,11 @@ glm::ivec2 blocksReaching(const SheetLayout& layout, int first, int last) {
 
 SheetLayout layoutPart(const SheetLayout& whole, const SheetBox& box, const BlockBox& among) {
     const int blockPixels = whole.blockPixels();
-    const int group = whole.voxelsPerPixel;
     SheetLayout part = whole;
     for (int axis = 0; axis < 2; ++axis) {
         glm::ivec2 blocks = reachingOf(whole, whole.blocks[axis], box.min[axis], box.max[axis]);
         blocks = {std::max(blocks.x, among.first[axis]),
                   std::min<int>(blocks.y - 1, among.last[axis]) + 1};
-        blocks = {blocks.x / group * group, (blocks.y + group - 1) / group * group};
         part.blocks[axis] = std::max(blocks.y - blocks.x, 0);
         part.firstVoxel[axis] += 8 * blocks.x;
         part.origin[axis] = blockPixels * blocks.x;
@@ -112,9 +104,7 @@ SheetLayout layoutPart(const SheetLayout& whole, const SheetBox& box, const Bloc
 
 Sheet::Sheet(const SheetLayout& layout, std::pmr::memory_resource& memory)
     : layout_(layout),
-      reach_(layout.pixelsPerVoxel() < 1
-                 ? BlockReach(layout.voxelsPerPixel)
-                 : BlockReach(layout.resolution, layout.reachPixels, layout.footprintPixels)),
+      reach_(layout.resolution, layout.reachPixels, layout.footprintPixels),
       bytesPerRow_((layout.tiles().x + 7) / 8 * 8),
       pixels_(layout.bytes() / sizeof(std::int32_t), &memory),
       full_(bytesPerRow_ * layout.tiles().y),
@@ -122,12 +112,9 @@ Sheet::Sheet(const SheetLayout& layout, std::pmr::memory_resource& memory)
       touchedRows_(layout.tiles().y),
       left_(bytesPerRow_) {}
 
-// Margins begin at tiles, and so do blocks, or as many as share one.
+// Margins begin at tiles, and so do blocks.
 glm::ivec2 Sheet::firstTileOf(glm::ivec2 block) const {
-    // Powers of two.
-    const int shift = std::countr_zero(unsigned(layout_.voxelsPerPixel));
-    return (layout_.resolution * block >> shift) + layout_.marginPixels / kTilePixels +
-           reach_.firstTile();
+    return layout_.resolution * block + layout_.marginPixels / kTilePixels + reach_.firstTile();
 }
 
 void Sheet::touch(glm::ivec2 block, std::uint64_t voxels) {
@@ -159,14 +146,13 @@ void Sheet::forReach(glm::ivec2 block, const std::uint64_t (&voxels)[kMasks],
     // As most footprints do: so that loops unroll.
     constexpr int kMostReach = 3;
     const glm::ivec2 first = firstTileOf(block);
-    const glm::ivec2 phase = block & (layout_.voxelsPerPixel - 1);
     const auto forGroup = [&](int column, int row, auto columns, auto rows) {
         // Of each column of tiles, a byte for each row of them.
         std::uint64_t reached[kMasks][8];
         for (std::size_t i = 0; i < kMasks; ++i) {
             for (int x = 0; x < columns; ++x) {
-                const std::uint8_t from = reach_.rowsReaching(phase.x, column + x, voxels[i]);
-                reached[i][x] = reach_.pixelRows(phase.y, row / 8, from);
+                const std::uint8_t from = reach_.rowsReaching(column + x, voxels[i]);
+                reached[i][x] = reach_.pixelRows(row / 8, from);
             }
         }
         for (int y = 0; y < rows; ++y) {

@@ -20,14 +20,13 @@
 namespace deltasplat {
 
 /// Where sheet pixels lie. Pixels run along v, rows along u: the order of a leaf's voxels. Pixel p
-/// is at voxel position (p - marginPixels + offsetPixels) / pixelsPerVoxel() + firstVoxel. The
+/// is at voxel position (p - marginPixels + offsetPixels) / resolution + firstVoxel. The
 /// margin takes footprints that reach over the edge, and keeps the outermost pixels zero.
 struct SheetLayout {
     int resolution = 1;        ///< as Footprint::resolution
-    int voxelsPerPixel = 1;    ///< as Footprint::voxelsPerPixel
     int firstSlice = 0;        ///< of the volume: the slice that lies on the base plane unshifted
-    glm::ivec2 firstVoxel{0};  ///< (v, u), multiples of 8 voxelsPerPixel: tiles begin with blocks
-    glm::ivec2 blocks{0};      ///< blocks of 8x8 voxels along (v, u), multiples of voxelsPerPixel
+    glm::ivec2 firstVoxel{0};  ///< (v, u), multiples of 8: tiles begin with blocks
+    glm::ivec2 blocks{0};      ///< blocks of 8x8 voxels along (v, u)
     /// A multiple of kTilePixels, at least one more than the footprint reaches.
     int marginPixels = 0;
     glm::ivec2 sizePixels{0};  ///< multiples of kTilePixels
@@ -37,8 +36,7 @@ struct SheetLayout {
     double offsetPixels = 0;   ///< as Footprint::offsetPixels
     int channels = 4;          ///< 4 (RGBA), or 1 where all that is seen has one colour
 
-    double pixelsPerVoxel() const { return double(resolution) / voxelsPerPixel; }
-    int blockPixels() const { return 8 * resolution / voxelsPerPixel; }
+    int blockPixels() const { return 8 * resolution; }
     glm::ivec2 tiles() const { return sizePixels / kTilePixels; }
     /// Pixels from one row to the next; longer than a row by what a vector may reach over its end.
     std::size_t pitchPixels() const { return std::size_t(sizePixels.x) + kTilePixels; }

@@ -10,7 +10,7 @@ namespace {
 
 // Where the base plane's pixel (0, 0) reads the whole sheet.
 glm::dvec2 startOf(const BasePlane& plane, const SheetLayout& layout, const SlicePlace& place) {
-    const double r = layout.pixelsPerVoxel();
+    const double r = layout.resolution;
     if (plane.isParallel()) return -(-place.offset * r - double(layout.marginPixels));
     return r * (place.scale * plane.positionOf({0, 0}) + place.offset) +
            double(layout.marginPixels) - layout.offsetPixels;
@@ -33,7 +33,7 @@ SheetReading readingOf(const BasePlane& plane, const SheetLayout& layout, int sl
     // Slices that nearly touch the eye are read at one place.
     const glm::dvec2 bounded = glm::clamp(whole, -2e9, 2e9);
     const double scale =
-        plane.isParallel() ? 1 : place.scale * plane.spacing() * layout.pixelsPerVoxel();
+        plane.isParallel() ? 1 : place.scale * plane.spacing() * layout.resolution;
     return {glm::ivec2(bounded) - layout.origin, start - whole, scale, layout.origin};
 }
 
@@ -51,7 +51,7 @@ PlaneBox reachOf(const BasePlane& plane, const SheetLayout& layout, int firstSli
     for (const int slice : {firstSlice, lastSlice}) {
         const SlicePlace place = plane.placeOf(slice);
         const glm::dvec2 start = startOf(plane, layout, place) - glm::dvec2(layout.origin);
-        const double scale = place.scale * plane.spacing() * layout.pixelsPerVoxel();
+        const double scale = place.scale * plane.spacing() * layout.resolution;
         for (int axis = 0; axis < 2; ++axis) {
             addReach(start[axis], scale, layout.sizePixels[axis], limits.min[axis],
                      limits.max[axis], reach.min[axis], reach.max[axis]);

@@ -289,7 +289,7 @@ HWY_EXPORT(findFullRowsKernel);
 HWY_EXPORT(addLowDigitsKernel);
 
 bool TileWeights::fits(const Footprint& footprint) {
-    return footprint.resolution <= 2 && footprint.voxelsPerPixel == 1 && footprint.width % 2 == 1 &&
+    return footprint.resolution <= 2 && footprint.width % 2 == 1 &&
            footprint.width <= 2 * footprint.resolution + 1;
 }
 

@@ -13,10 +13,9 @@
 namespace deltasplat {
 namespace {
 
-using Weights = std::variant<TileWeights, CellWeights, CoarseWeights>;
+using Weights = std::variant<TileWeights, CellWeights>;
 
 Weights weightsOf(const Footprint& footprint, int channels) {
-    if (CoarseWeights::fits(footprint)) return CoarseWeights(footprint, channels);
     if (TileWeights::fits(footprint)) return TileWeights(footprint, channels);
     return CellWeights(footprint, channels);
 }
@@ -25,7 +24,6 @@ Weights weightsOf(const Footprint& footprint, int channels) {
 
 // Measured (docs/decisions.md, "Few changes are stamped").
 std::uint64_t TileSplatter::leastStamps(const Footprint& footprint) {
-    if (CoarseWeights::fits(footprint)) return 0;
     return TileWeights::fits(footprint) ? 12 : 20;
 }
 
@@ -33,8 +31,8 @@ std::uint64_t TileSplatter::leastStamps(const Footprint& footprint) {
 // Cells need not begin where tiles do, and take more.
 TileSplatter::PlaneSize TileSplatter::planeSize(const Footprint& footprint,
                                                 const SheetLayout& layout) {
-    const int margin = layout.marginPixels / layout.resolution * layout.voxelsPerPixel +
-                       (isWide(footprint) ? CellWeights::kMostTaps : 0);
+    const int margin =
+        layout.marginPixels / layout.resolution + (isWide(footprint) ? CellWeights::kMostTaps : 0);
     return {margin, std::size_t(layout.channels) * (8 * layout.blocks.x + 2 * margin + 8),
             std::size_t(8 * layout.blocks.y + 2 * margin)};
 }
@@ -110,8 +108,6 @@ void TileSplatter::sumTiles(int row, std::span<const std::uint8_t> touched,
             low = {pairedRow(low_->plane, row),
                    {&low_->rows[touched.size() * row], touched.size()}};
         splatTiles(*weights, pairedRow(high_, row), low, tiles, touched, full);
-    } else if (const auto* coarse = std::get_if<CoarseWeights>(&weights_)) {
-        splatCoarse(*coarse, planeRow(high_, row), tiles, touched, full);
     } else {
         const glm::ivec2 pixel(0, kTilePixels * row);
         const CellPlane from{numbersAt(high_, glm::ivec2(size_.margin)), size_.pitch,
@@ -127,7 +123,7 @@ PairedRow TileSplatter::pairedRow(Plane& plane, int row) const {
 // The voxels of a row of tiles that begins with one, as margins do.
 PlaneRow TileSplatter::planeRow(Plane& plane, int row) const {
     const SheetLayout& layout = sheet_.layout();
-    const int voxel = kTilePixels * row * layout.voxelsPerPixel / layout.resolution;
+    const int voxel = kTilePixels * row / layout.resolution;
     return {numbersAt(plane, {0, voxel}), size_.pitch};
 }
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "splat/cell_kernels.h"
-#include "splat/coarse_kernels.h"
 #include "splat/slice_blocks.h"
 #include "splat/tile_kernels.h"
 
@@ -20,21 +19,18 @@ class TileSplatter {
   public:
     /// Whether a footprint is small enough: as one of the weights says.
     static bool fits(const Footprint& footprint) {
-        return TileWeights::fits(footprint) || CellWeights::fits(footprint) ||
-               CoarseWeights::fits(footprint);
+        return TileWeights::fits(footprint) || CellWeights::fits(footprint);
     }
 
-    /// Whether a footprint is wider than those of the smallest weights, or of voxels that share
-    /// pixels: such as CellWeights are for, and those that do not fit.
-    static bool isWide(const Footprint& footprint) {
-        return !TileWeights::fits(footprint) && !CoarseWeights::fits(footprint);
-    }
+    /// Whether a footprint is wider than those of the smallest weights: such as CellWeights are
+    /// for, and those that do not fit.
+    static bool isWide(const Footprint& footprint) { return !TileWeights::fits(footprint); }
 
     /// Whether low digits are summed along with high ones.
     static bool addsLow(const Footprint& footprint) { return TileWeights::fits(footprint); }
 
     /// Returns how many voxels of a block a slice has to stamp for this to be faster than stamping
-    /// them: none where voxels share pixels, which nobody stamps.
+    /// them.
     static std::uint64_t leastStamps(const Footprint& footprint);
 
     /// Bytes that one takes, of a footprint that fits, without its sheet.
@@ -106,7 +102,7 @@ class TileSplatter {
 
     SliceBlocks blocks_;
     Sheet& sheet_;
-    std::variant<TileWeights, CellWeights, CoarseWeights> weights_;
+    std::variant<TileWeights, CellWeights> weights_;
     PlaneSize size_;  // of planes
     Plane high_;
     std::optional<Low> low_;               // if summed along

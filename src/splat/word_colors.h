@@ -31,10 +31,6 @@ class WordColors {
 
     /// Which planes and digits there are, and in which units; of classes there is the empty one.
     const ClassTable& table() const { return table_; }
-    /// Whether the other shows the same classes and looks as the same (LookLight::isLike).
-    bool isLike(const WordColors& other) const {
-        return table_.planes.size() == other.table_.planes.size() && light_->isLike(*other.light_);
-    }
     /// Lights a word.
     /// @param out  [planes]
     void light(std::size_t word, int slice,

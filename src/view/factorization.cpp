@@ -69,8 +69,7 @@ void checkResolution(double resolution) {
     if (isResolution(resolution)) return;
     throw Error(ErrorCode::kUsage,
                 gotExpected("`resolution`", numberText(resolution),
-                            "a whole number within 1.." + std::to_string(kMaxResolution) +
-                                ", or 1/2, 1/4 or 1/8"));
+                            "a whole number within 1.." + std::to_string(kMaxResolution)));
 }
 
 // Lines of sight of one axis, in steps (away, u, v), of which one shows a corner of the picture's
@@ -235,9 +234,7 @@ double pixelsAtMiddle(const Camera& camera, const IndexBox& box, const glm::dmat
 }  // namespace
 
 bool isResolution(double resolution) {
-    if (!(resolution > 0 && resolution <= kMaxResolution)) return false;
-    if (resolution >= 1) return resolution == std::floor(resolution);
-    return resolution == 0.5 || resolution == 0.25 || resolution == 1.0 / kMostVoxelsPerPixel;
+    return resolution >= 1 && resolution <= kMaxResolution && resolution == std::floor(resolution);
 }
 
 Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,

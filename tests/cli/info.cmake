@@ -28,15 +28,6 @@ deltasplat_cli_test(info.tf ARGS info ball.vdb --tf tf_good.json
 deltasplat_cli_test(info.tf_missing EXIT 3 ARGS info ball.vdb --tf tf_missing.json
     STDERR "deltasplat: tf_missing.json: got no such file; expected a transfer function (ParaView's JSON)")
 
-# What a delta grid would take. Of an empty grid, and of delta grids, nothing is said.
-deltasplat_cli_test(info.as_deltas ARGS info ball.vdb
-    STDOUT_MATCHES "as deltas +(smaller than|larger than|about as large as) an ordinary .vdb, [0-9.]+ of its [0-9.]+ KiB, as voxels [0-9.]+; rendered (faster along [xyz] where voxels are divided|no faster); estimated from 100.00 % of the blocks
-  along x")
-deltasplat_cli_test(info.no_deltas ARGS info empty.vdb
-    STDERR "deltasplat: warning: empty.vdb: grid \"density\": no active voxels"
-    STDOUT_MATCHES "code book[^\n]*
-  along x")
-
 # Where it lies, and what its axes mean.
 deltasplat_cli_test(info.place ARGS info ball.vdb
     STDOUT_MATCHES "world box +[(]-6, -6, -6[)] to [(]6, 6, 6[)]

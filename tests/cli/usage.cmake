@@ -109,14 +109,15 @@ deltasplat_refusal(tolerance_value
     "--tolerance-value: got -1; expected a finite number of at least 0" --tolerance-value -1)
 foreach(resolution 0 17 1.5 -1 1/3 1/16)
     deltasplat_refusal(resolution_${resolution}
-        "--resolution: got ${resolution}; expected a whole number from 1 to 16, or 1/2, 1/4 or 1/8"
+        "--resolution: got ${resolution}; expected a whole number from 1 to 16"
         --resolution ${resolution})
 endforeach()
-# One kernel is for what voxels share.
-deltasplat_cli_test(resolution.shared_sigma EXIT 2
-    ARGS render ${cube} -o out.exr --resolution 1/2 --sigma 0.5
-    STDERR "deltasplat: --sigma: got 0.5 with a --resolution below 1; expected none: voxels that share a sheet pixel have a kernel of its width")
-deltasplat_cli_test(resolution.shared CREATES out.exr ARGS render ${cube} -o out.exr --resolution 1/4)
+# What voxels that share a pixel were for.
+foreach(resolution 1/2 1/8 0.25)
+    deltasplat_refusal(resolution_${resolution}
+        "--resolution: got ${resolution}; expected 1 or more: voxels that share a pixel are softer, not faster; a smaller --size is"
+        --resolution ${resolution})
+endforeach()
 deltasplat_refusal(azimuth "--azimuth: got 30deg; expected a finite number from -1e+06 to 1e+06" --azimuth 30deg)
 deltasplat_refusal(frame_width "--frame-width: got 0; expected a finite number from 1e-30 to 1e+30"
     --frame-width 0)

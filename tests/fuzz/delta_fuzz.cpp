@@ -22,9 +22,6 @@ void makePieces(openvdb::GridBase& grid) {
     grid.removeMeta("delta_table");
     grid.insertMeta("delta_pieces", openvdb::StringMetadata(pieces));
     grid.insertMeta("delta_code_book", openvdb::StringMetadata("pieces"));
-    // Any number is a delta, with a sign or without; words of a stream are none.
-    if (grid.isType<openvdb::Int32Grid>())
-        grid.insertMeta("delta_version", openvdb::Int32Metadata(2));
 }
 
 // Half, table, linear, pieces, float32 and float64; as voxels, and packed; and a volume whose

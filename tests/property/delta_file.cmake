@@ -1,4 +1,2 @@
 deltasplat_test(property/delta_file_test.cpp SOURCES reference/plain_delta_reader.cpp)
-deltasplat_test(property/delta_estimate_test.cpp)
 deltasplat_test(property/delta_leaves_test.cpp)
-deltasplat_test(property/slab_facts_test.cpp)

@@ -23,7 +23,6 @@
 #include "ingest/grids/file_metadata.h"
 #include "reference/plain_delta_reader.h"
 #include "support/kept_grid.h"
-#include "support/put_header.h"
 #include "support/same_volume.h"
 #include "unit/ingest_helpers.h"
 
@@ -901,59 +900,6 @@ TEST(DeltaFile, FloatsBesideAnOutlierComeBackAsTheirCodes) {
         ASSERT_LE(std::fabs(plain.valueAt(at) - own),
                   std::max(2e-4 * std::fabs(own), 0x1p-16 * 0.006));
         ASSERT_EQ(plain.valueAt(at), volume.codeBook.valueOf(volume.codes->tree().getValue(at)));
-    }
-}
-
-// Makes a grid one of an older version, whose header says all, and up to 2 deltas have a sign.
-void makeOlder(int version, openvdb::Int32Grid& grid) {
-    DeltaHeader header = takeDeltaHeader(grid, "new");
-    ASSERT_EQ(header.version, 6);
-    header.version = version;
-    testing::putHeader(header, grid);
-    if (version > 2) return;
-    std::uint64_t negative = 0;
-    for (auto delta = grid.beginValueOn(); delta; ++delta) {
-        const std::int32_t number = *delta;
-        ASSERT_GE(number, 0);
-        negative += unsigned(number % 2);
-        delta.setValue(number % 2 == 0 ? number / 2 : -(number / 2) - 1);
-    }
-    ASSERT_GT(negative, 100u);
-}
-
-TEST(DeltaFile, OlderVersionsAreRead) {
-    for (const int version : {1, 2, 3, 4}) {
-        SCOPED_TRACE(version);
-        const bool isExact = version == 4;
-        const bool pieces = version == 2 || isExact;
-        const TempFolder folder;
-        std::mt19937 random(6);
-        std::vector<float> values = waves(random, 20);
-        if (!pieces)
-            for (float& value : values) value = std::round(value);
-        values[777] = 40000;
-        testing::writeBytes(kWavesFile, testing::bytesOf(values));
-        const Volume volume = readKept(kWavesFile);
-        ASSERT_EQ(bool(volume.codeBook.pieces), pieces);
-        DeltaFile file;
-        DeltaFileOptions options = isExact ? DeltaFileOptions() : codesOnly();
-        options.pack = false;
-        file.add(volume, options);
-        file.write("delta.vdb");
-        openvdb::initialize();
-        openvdb::io::File input("delta.vdb");
-        input.open();
-        const auto grid = openvdb::gridPtrCast<openvdb::Int32Grid>(input.readGrid(volume.name));
-        makeOlder(version, *grid);
-        openvdb::io::File("older.vdb").write({grid});
-        const Volume restored = readVolume("older.vdb");
-        const PlainVolume plain = testing::readPlainDeltas("older.vdb", volume.name);
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            const Coord at(int(i % 95), int(i / 95 % 41), int(i / 95 / 41));
-            const double own = volume.codeBook.valueOf(volume.codes->tree().getValue(at));
-            ASSERT_EQ(restored.codeBook.valueOf(restored.codes->tree().getValue(at)), own);
-            ASSERT_EQ(plain.valueAt(at), isExact ? double(values[i]) : own);
-        }
     }
 }
 

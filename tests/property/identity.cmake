@@ -1,4 +1,3 @@
-deltasplat_test(property/coarse_test.cpp)
 deltasplat_test(property/joined_test.cpp)
 deltasplat_test(property/identity_test.cpp)
 deltasplat_test(property/thin_test.cpp)

@@ -75,7 +75,7 @@ TEST(Prepared, picturesOfWhatIsSeenAreThoseOfAll) {
         // Inside, beside, and in front of the near plane.
         if (i % 3 == 1) camera.eyeWorld = {7.0 * (i % 5), 50 + i, 3.0 * (i % 7)};
         if (i % 5 == 2) camera.nearWorld = 20;
-        if (i % 6 == 1) options.resolution = 0.5;
+        if (i % 6 == 1) options.resolution = 1;
         if (i % 6 == 2) options.resolution = 2;
         if (i % 6 == 3 && i % 8 != 3) options.between = 1;
         if (i % 6 == 4) options.sigma = 1.5;

@@ -20,11 +20,10 @@ T entry(const openvdb::GridBase& grid, const std::string& name) {
     return found->value();
 }
 
-// Section "Metadata": from version 5 on what is usual may be missing.
+// Section "Metadata": what is usual may be missing.
 template <typename T>
 T entry(const openvdb::GridBase& grid, const std::string& name, const T& byDefault) {
-    const bool isThere = bool(grid[name]) || entry<std::int32_t>(grid, "delta_version") < 5;
-    return isThere ? entry<T>(grid, name) : byDefault;
+    return grid[name] ? entry<T>(grid, name) : byDefault;
 }
 
 std::vector<double> numbers(const std::string& text) {
@@ -47,12 +46,6 @@ class Bits {
         int zeros = 0;
         while (take(1) == 0) ++zeros;
         return (std::uint64_t{1} << zeros) + take(zeros) - 1;
-    }
-    std::uint64_t takeRice(int parameter, int width) {
-        std::uint64_t ones = 0;
-        while (ones < 8 && take(1) == 1) ++ones;
-        if (ones == 8) return take(width);
-        return (ones << parameter) + take(parameter);
     }
     // Numbers of so many places, in planes.
     std::vector<std::uint64_t> takePlanes(std::size_t count, int parameter, int width) {
@@ -187,12 +180,12 @@ class PackedDeltas {
         openvdb::Coord first = openvdb::Coord::max();
         openvdb::Coord last = openvdb::Coord::min();
     };
-    void take(Bits& bits, int interval, int width, bool isOld) {
+    void take(Bits& bits, int interval, int width) {
         std::vector<openvdb::Coord> columns;
         std::uint64_t slab = 0, u = 0, next = 0;
         const auto block = [](int low, std::uint64_t more) { return (low >> 3) + int(more); };
         const std::uint64_t number = bits.takeNumber();
-        said.isThere = !isOld && bits.take(1) == 1;
+        said.isThere = bits.take(1) == 1;
         for (std::uint64_t left = number; left > 0; --left) {
             const std::uint64_t moreSlabs = bits.takeNumber();
             slab += moreSlabs;
@@ -227,8 +220,7 @@ class PackedDeltas {
             int s = column.x();
             for (std::uint64_t left = bits.takeNumber() + 1; left > 0; --left, ++s) {
                 s += int(bits.takeNumber());
-                takeBlock(bits, openvdb::Coord(8 * s, 8 * column.y(), 8 * column.z()), width,
-                          isOld);
+                takeBlock(bits, openvdb::Coord(8 * s, 8 * column.y(), 8 * column.z()), width);
             }
         }
     }
@@ -236,7 +228,7 @@ class PackedDeltas {
     Said said;
 
   private:
-    void takeBlock(Bits& bits, const openvdb::Coord& corner, int width, bool isOld) {
+    void takeBlock(Bits& bits, const openvdb::Coord& corner, int width) {
         for (int s = 0; s < 8; ++s) {
             if (bits.take(1) == 0) continue;
             const int form = int(bits.take(2)), parameter = bits.takeParameter(width);
@@ -249,10 +241,9 @@ class PackedDeltas {
             std::vector<int> places;
             for (int n = 0; n < 64; ++n)
                 if (form == 0 || (mask >> n & 1) != 0) places.push_back(n);
-            std::vector<std::uint64_t> numbers(places.size());
-            if (!isOld) numbers = bits.takePlanes(places.size(), parameter, width);
+            const std::vector<std::uint64_t> numbers =
+                bits.takePlanes(places.size(), parameter, width);
             for (std::size_t i = 0; i < places.size(); ++i) {
-                if (isOld) numbers[i] = bits.takeRice(parameter, width);
                 const std::uint64_t number = numbers[i] + (form != 0);
                 if (number != 0)
                     at(corner + openvdb::Coord(s, places[i] / 8, places[i] % 8)) = number;
@@ -290,8 +281,8 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
     const auto narrow = openvdb::gridPtrCast<openvdb::Int32Grid>(deltas);
     const auto wide = openvdb::gridPtrCast<openvdb::Int64Grid>(deltas);
     const int version = entry<std::int32_t>(*deltas, "delta_version");
-    if (version < 1 || version > 7) throw std::runtime_error("version");
-    const bool isPacked = version == 5 || version == 7;
+    if (version != 6 && version != 7) throw std::runtime_error("version");
+    const bool isPacked = version == 7;
 
     // Axis of the source that slices, u and v run along.
     const int axis = entry<std::string>(*deltas, "delta_slice_axis", "z")[0] - 'x';
@@ -336,7 +327,7 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
         int width = isExact ? (exact.is32() ? 32 : 64) : 0;
         while (!isExact && 2 * largest >> width != 0) ++width;
         Bits bits(*wide);
-        packed.take(bits, interval, width, version == 5);
+        packed.take(bits, interval, width);
     }
     PackedDeltas::Said found;
     const auto note = [&](const openvdb::Coord& suv, int code) {
@@ -365,11 +356,7 @@ PlainVolume readPlainDeltas(const std::string& file, const std::string& name) {
                 } else if (narrow && narrow->tree().probeValue(place, delta)) {
                     // Section "Reading it".
                     const auto z = std::int64_t(std::uint32_t(delta));
-                    if (version < 3) {
-                        slot += std::uint64_t(std::int64_t{delta});
-                    } else {
-                        slot += std::uint64_t(z % 2 == 0 ? z / 2 : -(z + 1) / 2);
-                    }
+                    slot += std::uint64_t(z % 2 == 0 ? z / 2 : -(z + 1) / 2);
                 } else if (wide && wide->tree().probeValue(place, wideDelta)) {
                     const auto z = std::uint64_t(wideDelta);
                     slot += z % 2 == 0 ? z / 2 : ~(z / 2);

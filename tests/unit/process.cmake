@@ -1,7 +1,6 @@
 deltasplat_test(unit/cgroup_test.cpp)
 deltasplat_test(unit/checked_json_test.cpp)
 deltasplat_test(unit/shared_folder_test.cpp)
-deltasplat_test(unit/paired_files_test.cpp)
 deltasplat_test(unit/commit_pair_test.cpp)
 set(tools ${PROJECT_SOURCE_DIR}/tools)
 deltasplat_test(unit/flag_names_test.cpp SOURCES ${tools}/flag_names.cpp)

@@ -283,9 +283,9 @@ TEST(BlockReach, IsThatOfItsVoxelsFootprints) {
                     }
                 }
                 for (int x = 0; x < tiles; ++x) {
-                    const std::uint8_t rows = reach.rowsReaching(0, x, voxels);
+                    const std::uint8_t rows = reach.rowsReaching(x, voxels);
                     for (int y = 0; y < tiles; ++y) {
-                        EXPECT_EQ(reach.pixelRows(0, y / 8, rows) >> 8 * (y % 8) & 0xFF,
+                        EXPECT_EQ(reach.pixelRows(y / 8, rows) >> 8 * (y % 8) & 0xFF,
                                   expected[std::size_t(y * tiles + x)]);
                     }
                 }

@@ -11,7 +11,6 @@
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/simd.h"
 #include "splat/cell_kernels.h"
-#include "splat/coarse_kernels.h"
 #include "support/simd_levels.h"
 
 namespace deltasplat {
@@ -275,66 +274,6 @@ TEST_P(TilesOnEveryLevel, CellsOfLongRowsAreTheSumsOfStamps) {
     }
 }
 
-// The weights of a tent, by how far a voxel's middle lies from that of a pixel.
-TEST_P(TilesOnEveryLevel, PixelsThatVoxelsShareAreSumsUnderATent) {
-    constexpr int kEdge = 8;  // voxels around the tiles'
-    const std::vector<std::uint8_t> touched = {0xFF, 0, 0x24, 0x80, 0, 0, 0, 0};
-    std::mt19937 random(8);
-    for (const int voxels : {2, 4, 8}) {
-        const int width = voxels * 8 * int(touched.size()) + 2 * kEdge;
-        const int height = voxels * 8 + 2 * kEdge;
-        for (const int channels : {1, 4}) {
-            for (const unsigned empty : {0U, 30U}) {
-                std::vector<std::int16_t> plane(std::size_t(channels) * width * height);
-                for (std::int16_t& color : plane)
-                    color = std::int16_t(random() % (empty + 1) == 0 ? ClassTable::kMax : 0);
-                const std::size_t pitch = std::size_t(channels) * 8 * touched.size();
-                std::vector<std::int32_t> sheet(8 * pitch, -7);
-                std::vector<std::uint8_t> full(touched.size(), 0xFF);
-                splatCoarse(CoarseWeights(makeCoarseFootprint(voxels), channels),
-                            {&plane[std::size_t(channels) * kEdge * (width + 1)],
-                             std::size_t(channels) * width},
-                            {sheet.data(), pitch}, touched, full);
-                const auto weightOf = [&](int voxel, int pixel) {
-                    const int twice = std::abs(2 * voxel - 2 * voxels * pixel - voxels + 1);
-                    return std::max(0, 2 * voxels - twice);
-                };
-                for (int y = 0; y < 8; ++y) {
-                    for (int x = 0; x < int(pitch) / channels; ++x) {
-                        const bool isTouched = touched[x / 8] >> y & 1;
-                        // Rows between touched ones may be made too.
-                        if (!isTouched && touched[x / 8] != 0) continue;
-                        for (int c = 0; c < channels; ++c) {
-                            std::int64_t sum = 0;
-                            for (int v = -kEdge; v < height - kEdge; ++v) {
-                                for (int u = voxels * (x - 1); u < voxels * (x + 2); ++u) {
-                                    const int place = (v + kEdge) * width + u + kEdge;
-                                    sum += std::int64_t{weightOf(u, x)} * weightOf(v, y) *
-                                           plane[std::size_t(channels * place + c)];
-                                }
-                            }
-                            const std::int64_t all = 4LL * voxels * voxels * voxels * voxels;
-                            ASSERT_EQ(sheet[y * pitch + channels * x + c],
-                                      isTouched ? sum * (32768 / all) : -7)
-                                << voxels << ' ' << channels << ' ' << x << ' ' << y;
-                        }
-                    }
-                    for (std::size_t tile = 0; tile < touched.size(); ++tile) {
-                        if ((touched[tile] >> y & 1) == 0) {
-                            EXPECT_EQ(full[tile] >> y & 1, 1);
-                            continue;
-                        }
-                        bool any = false;
-                        for (int i = 0; i < 8 * channels; ++i)
-                            any = any || sheet[y * pitch + 8 * channels * tile + i] != 0;
-                        EXPECT_EQ(full[tile] >> y & 1, any ? 1 : 0);
-                    }
-                }
-            }
-        }
-    }
-}
-
 TEST_P(TilesOnEveryLevel, LowDigitsAreAddedRounded) {
     std::mt19937 random(3);
     for (const int channels : {1, 4}) {
@@ -384,7 +323,6 @@ TEST(CellWeights, FitFootprintsThatReachSevenVoxelsOrSix) {
     EXPECT_TRUE(fits(4, 24));
     EXPECT_FALSE(fits(4, 25));
     EXPECT_FALSE(fits(5, 5));
-    EXPECT_FALSE(CellWeights::fits(makeCoarseFootprint(2)));
 }
 
 TEST(TileWeights, FitFootprintsThatReachNoFartherThanTheNextVoxel) {

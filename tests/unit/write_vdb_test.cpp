@@ -227,7 +227,7 @@ TEST(WriteVdb, NotesOfWordsAreNotPacked) {
     for (const char* const name : {"packed.vdb", "words.vdb"}) {
         SCOPED_TRACE(name);
         const VdbFile file(name);
-        const auto leaves = file.readLeaves(file.grids().front(), VdbFile::Find::kByNotesAlone);
+        const auto leaves = file.readLeaves(file.grids().front(), VdbFile::Find::kByNotes);
         ASSERT_TRUE(leaves);
         EXPECT_EQ(leaves->leaves().size(), grid->tree().leafCount());
         openvdb::io::File theirs(name);

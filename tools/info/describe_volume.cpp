@@ -34,15 +34,6 @@ std::string visibleText(const GridReport& report, const DescribeOptions& options
                                        : "voxels other than " + value + ", the guessed background";
 }
 
-// As `delta` chooses: of equal ones the last.
-int axisOfFewestDeltas(const std::array<SliceCounts, 3>& counts) {
-    int axis = 2;
-    for (const int other : {1, 0}) {
-        if (counts[other].deltas < counts[axis].deltas) axis = other;
-    }
-    return axis;
-}
-
 }  // namespace
 
 GridReport describeVolume(Volume volume, const DescribeOptions& options, bool plot) {
@@ -59,9 +50,6 @@ GridReport describeVolume(Volume volume, const DescribeOptions& options, bool pl
         report.columns[axis] =
             countDeltasPerSlice(report.volume, axis, seen, slicesPerColumn(slices));
     }
-    report.deltaAxis = axisOfFewestDeltas(report.counts);
-    if (!report.volume.origin)
-        report.deltaEstimate = estimateDeltaFile(report.volume, report.deltaAxis);
     // The codes are counted, and with the source the largest thing in memory.
     report.volume.codes.reset();
     report.volume.source.reset();

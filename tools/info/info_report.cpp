@@ -66,14 +66,6 @@ Json toJson(const DeltaOrigin& origin) {
             {"max_error", origin.maxError}};
 }
 
-Json toJson(const DeltaEstimate& estimate) {
-    return {{"plain_bytes", std::round(estimate.plainBytes)},
-            {"delta_bytes", std::round(estimate.deltaBytes)},
-            {"voxel_bytes", std::round(estimate.voxelBytes)},
-            {"faster", isRenderedFaster(estimate)},
-            {"sampled", estimate.sampled}};
-}
-
 // How many active voxels have the guessed value; of a background nobody counts them.
 Json guessedVoxels(const GridReport& report) {
     if (report.volume.hasBackground || !report.backgroundGuess) return {};
@@ -112,7 +104,6 @@ Json toJson(const GridReport& report, const Json& transferFunction) {
             {"code_error",
              {{"absolute", volume.codeError.absolute}, {"relative", volume.codeError.relative}}},
             {"delta", volume.origin ? toJson(*volume.origin) : Json()},
-            {"delta_estimate", report.deltaEstimate ? toJson(*report.deltaEstimate) : Json()},
             {"axes", axes},
             {"transfer_function", transferFunction},
             {"stamps", stamps}};
@@ -146,11 +137,6 @@ std::string jsonText(const std::vector<FileReport>& reports, const std::string& 
     Json json{{"files", files}};
     if (isSequence) json["sequence"] = sequenceJson(reports);
     return dumpJson(json);
-}
-
-// By their voxels: where there are few changes, there is little to add up.
-bool isRenderedFaster(const DeltaEstimate& estimate) {
-    return estimate.readsByBlocks && estimate.voxelBytes < 0.95 * estimate.plainBytes;
 }
 
 }  // namespace deltasplat

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "deltasplat/delta/delta_estimate.h"
 #include "deltasplat/delta/stamp_counts.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/volume.h"
@@ -20,8 +19,6 @@ struct GridReport {
     std::int64_t volumeIndex = 0;       ///< which of these volumes
     std::array<SliceCounts, 3> counts;  ///< along x, y and z, every active voxel visible
     std::optional<double> backgroundGuess;
-    int deltaAxis = 2;                           ///< the one with the fewest deltas
-    std::optional<DeltaEstimate> deltaEstimate;  ///< what a delta grid along it would take
     /// Which voxels the stamps below take for visible: "not clear under ct", ...
     std::string visible;
     std::array<StampCounts, 3> stamps;  ///< predicted for a view along x, y and z
@@ -49,9 +46,5 @@ std::string jsonText(const std::vector<FileReport>& reports, const std::string& 
 
 /// Returns one block of aligned lines for each grid, and names the grids that are not scalar.
 std::string plainText(const std::vector<FileReport>& reports);
-
-/// Whether a volume whose voxels are divided is rendered faster, along its slices, from its delta
-/// grid: read straight from its leaves, and clearly smaller. Undivided it takes about as long.
-bool isRenderedFaster(const DeltaEstimate& estimate);
 
 }  // namespace deltasplat

@@ -77,25 +77,6 @@ std::string deltaText(const DeltaOrigin& origin) {
     return text + "largest error " + numberText(origin.maxError);
 }
 
-// Sizes are known to about a twentieth.
-std::string estimateText(const DeltaEstimate& estimate, int axis) {
-    const auto ratio = [&](double bytes) {
-        char text[32];
-        std::snprintf(text, sizeof text, "%.2f", bytes / estimate.plainBytes);
-        return std::string(text);
-    };
-    const double share = estimate.deltaBytes / estimate.plainBytes;
-    const char* const size = share < 0.95   ? "smaller than"
-                             : share > 1.05 ? "larger than"
-                                            : "about as large as";
-    return std::string(size) + " an ordinary .vdb, " + ratio(estimate.deltaBytes) + " of its " +
-           humanBytes(estimate.plainBytes) + ", as voxels " + ratio(estimate.voxelBytes) +
-           "; rendered " +
-           (isRenderedFaster(estimate) ? "faster " + alongText(axis) + " where voxels are divided"
-                                       : "no faster") +
-           "; estimated from " + percent(estimate.sampled, 1) + " of the blocks";
-}
-
 std::string codeBookText(const Volume& volume) {
     const CodeError& error = volume.codeError;
     if (error.absolute == 0) return volume.codeBook.name();
@@ -230,8 +211,6 @@ std::string gridText(const GridReport& report) {
     text += valuesText(v) + labelsText(v);
     text += textLine("background", backgroundText(report)) + textLine("code book", codeBookText(v));
     if (v.origin) text += textLine("delta grid", deltaText(*v.origin));
-    if (report.deltaEstimate)
-        text += textLine("as deltas", estimateText(*report.deltaEstimate, report.deltaAxis));
     for (int axis = 0; axis < 3; ++axis) text += textLine(alongText(axis), axisText(report, axis));
     return text + stampsText(report) + histogramText(v);
 }

@@ -6,7 +6,6 @@
 #include "deltasplat/memory_limit.h"
 #include "deltasplat/threads.h"
 #include "lower_case.h"
-#include "modules/exr_module.h"
 #include "modules/image_module.h"
 
 namespace deltasplat {
@@ -34,7 +33,6 @@ std::jthread beside(void (*load)()) {
 
 std::jthread loadEarly(const std::filesystem::path& file) {
     const std::string extension = lowerCase(file.extension().string());
-    if (extension == ".exr") return beside([] { exrModule(); });
     if (extension.starts_with(".tif") || extension == ".jpg" || extension == ".jpeg")
         return beside([] { imageModule(); });
     return {};

@@ -13,7 +13,6 @@
 
 #include "deltasplat/error.h"
 #include "memory.h"
-#include "modules/exr_module.h"
 #include "modules/image_module.h"
 #include "modules/medical_module.h"
 #include "modules/module_version.h"
@@ -38,8 +37,7 @@ void requireMemoryOf(const std::string& name) {
     };
     static constexpr Library kLibraries[] = {{"openvdb", "OpenVDB's library", 28},
                                              {"images", "OpenImageIO's library", 112},
-                                             {"medical", "GDCM's library", 19},
-                                             {"exr", "OpenEXR's library", 4}};
+                                             {"medical", "GDCM's library", 19}};
     for (const Library& library : kLibraries)
         if (name == library.module) requireMemory(library.name, library.mebibytes * 0x1p20);
 }
@@ -88,11 +86,6 @@ void* openModule(const char* name, int binding) {
     }
     requireSameVersion(name, file, library);
     return library;
-}
-
-const ExrModule& exrModule() {
-    static const ExrModule& module = load<ExrModule>("exr");
-    return module;
 }
 
 const ImageModule& imageModule() {

@@ -175,8 +175,6 @@ void showScene(const RenderCommand& command, const ReadScene& scene, const Seque
         result = renderHeldOut(command.holdoutDepth, volume, options, rendering);
     } else if (part.prepared) {
         result = renderPrepared(*part.prepared, options, rendering);
-    } else if (part.behind) {
-        result = part.behind->render(volume, options, rendering);
     } else {
         result = render(volume, options, rendering);
     }
@@ -224,15 +222,15 @@ class Preview {
 
 }  // namespace
 
-ReadScene sceneOf(const RenderCommand& command, const SequencePart& part, const Listener& listener,
-                  const VolumeReader& reader) {
+ReadScene sceneOf(const RenderCommand& command, const SequencePart& part,
+                  const Listener& listener) {
     if (part.prepared) {
         const Scene& scene = part.prepared->scene();
         ReadScene read{command.picture.render, scene.volume};
         read.options.optics = scene.optics;
         return read;
     }
-    ReadScene read = readScene(command.input, command.picture, listener, part.look, reader);
+    ReadScene read = readScene(command.input, command.picture, listener, part.look);
     if (command.picture.surface.color && !read.options.optics.surface)
         listener.warn("--surface-color: has no effect without a surface");
     return read;

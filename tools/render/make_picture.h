@@ -25,8 +25,8 @@ struct MadePicture {
 
 /// Reads the scene, unless it is there already.
 /// @throw as readScene
-ReadScene sceneOf(const RenderCommand& command, const SequencePart& part, const Listener& listener,
-                  const VolumeReader& reader = {});
+ReadScene sceneOf(const RenderCommand& command, const SequencePart& part,
+                  const Listener& listener);
 
 /// Reads, renders and writes one picture, and its stats.
 MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const Session& session,

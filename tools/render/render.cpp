@@ -129,48 +129,8 @@ class WorstBound {
     RenderStats worst_;
 };
 
-// How much frames differ from the ones before.
-class ChangedShares {
-  public:
-    // Of a frame that was rendered behind another, or first.
-    void add(int frame, const RenderStats& stats) {
-        {
-            const std::lock_guard lock(mutex_);
-            ++frames_;
-        }
-        if (!stats.changed) return;
-        logLine(LogLevel::kInfo, "frame " + std::to_string(frame) + ": " + percent(*stats.changed) +
-                                     " of what it shows differs from the frame before");
-        const std::lock_guard lock(mutex_);
-        shares_.push_back(*stats.changed);
-    }
-    void show(const Session& session) {
-        if (frames_ < 2 || !session.common.verbose) return;
-        std::string text = "not known, for no two frames can be compared";
-        std::sort(shares_.begin(), shares_.end());
-        if (!shares_.empty()) {
-            text = percent(shares_[shares_.size() / 2]) + " of what a frame shows (median of " +
-                   std::to_string(shares_.size()) + "), " + percent(shares_.front()) + " to " +
-                   percent(shares_.back());
-        }
-        std::fputs(("differs from the frame before: " + text + "\n").c_str(), stderr);
-    }
-
-  private:
-    static std::string percent(double share) {
-        char text[32];
-        std::snprintf(text, sizeof text, "%.3g %%", 100 * share);
-        return text;
-    }
-
-    std::mutex mutex_;
-    std::size_t frames_ = 0;
-    std::vector<double> shares_;
-};
-
 void runSequence(const CLI::App& app, const RenderCommand& command, const Session& session) {
     WorstBound worst;
-    ChangedShares changed;
     if (!command.output.empty()) validateOptions(command);
     {
         ProgressDisplay display(session.common);
@@ -184,10 +144,8 @@ void runSequence(const CLI::App& app, const RenderCommand& command, const Sessio
                 const RenderStats stats =
                     makePicture(app, frame, session, part, listener).result.stats;
                 worst.add(stats);
-                if (part.behind) changed.add(*part.frame, stats);
             });
     }
-    changed.show(session);
     worst.show(session);
 }
 
@@ -197,7 +155,7 @@ void runSlabs(const CLI::App& app, const RenderCommand& command, const Session& 
     warnOfUnusedOptions(app, command, {command.input}, display);
     const Listener all = display.stage(0, 1);
     const Listener reading = partOf(all, 0, kReadShare);
-    const ReadScene scene = sceneOf(command, {}, reading, slabReader(app, command));
+    const ReadScene scene = sceneOf(command, {}, reading);
     warnOfUnusedView(app, scene.options.camera, *scene.volume, reading);
     warnOfClipping(command.picture, SequencePart().frame, *scene.volume, reading);
     writeSlabs(app, command, scene, session, partOf(all, kReadShare, 1));

@@ -358,8 +358,7 @@ std::function<bool(const std::string&, double)> shownFirst(const PictureOptions&
 }  // namespace
 
 Volume readToRender(const std::filesystem::path& input, const PictureOptions& picture,
-                    RenderOptions& options, const Listener& listener, const FrameLook* look,
-                    const VolumeReader& reader) {
+                    RenderOptions& options, const Listener& listener, const FrameLook* look) {
     ReadOptions read = picture.read;
     if (!read.paletteNumbers && isForLabels(picture.transferFunction)) read.paletteNumbers = true;
     if (picture.surface.asked || picture.surface.ofLevelSets)
@@ -368,10 +367,9 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
     // Frames are kept, many at a time, and told by what they take.
     read.readLater = !look && mayShowSome(picture, options.optics);
     if (read.readLater) read.isWanted = shownFirst(picture, options.optics);
-    Volume volume = placed(look     ? look->sequence.read(input, read, listener)
-                           : reader ? reader(input, read, listener)
-                                    : readVolume(input, read, listener),
-                           picture, {{}, listener.warning});
+    Volume volume = placed(
+        look ? look->sequence.read(input, read, listener) : readVolume(input, read, listener),
+        picture, {{}, listener.warning});
     if (measuresMillimetres(picture.render) && volume.lengthUnit.empty()) {
         listener.warn(input.string() + ": names no unit of length; " +
                       (picture.render.mode == Mode::kDrr ? "--mode drr" : "--sid") +
@@ -397,9 +395,9 @@ RenderOptions opticsFor(const Volume& volume, const std::filesystem::path& input
 }
 
 ReadScene readScene(const std::filesystem::path& input, const PictureOptions& picture,
-                    const Listener& listener, const FrameLook* look, const VolumeReader& reader) {
+                    const Listener& listener, const FrameLook* look) {
     RenderOptions options = readOptics(picture, listener);
-    Volume volume = readToRender(input, picture, options, listener, look, reader);
+    Volume volume = readToRender(input, picture, options, listener, look);
     return {options, std::make_shared<const Volume>(std::move(volume))};
 }
 

@@ -14,18 +14,13 @@ namespace deltasplat {
 /// @throw Error(kInput) if it cannot be read
 RenderOptions readOptics(const PictureOptions& picture, const Listener& listener);
 
-/// Reads a volume in readVolume's place.
-using VolumeReader =
-    std::function<Volume(const std::filesystem::path&, const ReadOptions&, const Listener&)>;
-
 /// Reads a volume and puts into `options` what depends on it: without a transfer function the grey
 /// ramp over its values.
-/// @param look    of the sequence that it is a frame of; null: it is none
-/// @param reader  of what is no frame; empty: readVolume
+/// @param look  of the sequence that it is a frame of; null: it is none
 /// @throw Error(kInput), Error(kUsage) as readVolume
 Volume readToRender(const std::filesystem::path& input, const PictureOptions& picture,
                     RenderOptions& options, const Listener& listener,
-                    const FrameLook* look = nullptr, const VolumeReader& reader = {});
+                    const FrameLook* look = nullptr);
 
 /// Returns the options to render a volume with that is there already: readOptics and what depends
 /// on the volume. Not of media, whose other grids are not read.
@@ -42,8 +37,7 @@ struct ReadScene {
 
 /// Reads all of what a picture is made of: readOptics and readToRender.
 ReadScene readScene(const std::filesystem::path& input, const PictureOptions& picture,
-                    const Listener& listener, const FrameLook* look = nullptr,
-                    const VolumeReader& reader = {});
+                    const Listener& listener, const FrameLook* look = nullptr);
 
 /// Returns what is up in the world: --up, else y or, of a patient, the head.
 glm::dvec3 upOf(const PictureOptions& picture, const Volume& volume);

@@ -85,17 +85,12 @@ Parser<std::int64_t> bits() {
 
 Parser<double> resolution() {
     return [](const std::string& option, const std::string& text) {
-        for (int voxels = 2; voxels <= kMostVoxelsPerPixel; voxels *= 2)
-            if (text == "1/" + std::to_string(voxels) || text == numberText(1.0 / voxels))
-                return 1.0 / voxels;
-        try {
-            return double(wholeNumber(1, kMaxResolution)(option, text));
-        } catch (const Error&) {
+        if (text == "1/2" || text == "1/4" || text == "1/8" || text.starts_with("0."))
             throw Error(ErrorCode::kUsage,
                         gotExpected(option, text,
-                                    "a whole number from 1 to " + std::to_string(kMaxResolution) +
-                                        ", or 1/2, 1/4 or 1/8"));
-        }
+                                    "1 or more: voxels that share a pixel are softer, not faster; "
+                                    "a smaller --size is"));
+        return double(wholeNumber(1, kMaxResolution)(option, text));
     };
 }
 
@@ -387,9 +382,7 @@ void addSplattingOptions(CLI::App& app, PictureOptions& picture) {
         "of 32 4x4 of at most 1/16, if it hardly shows");
     group.addValue("--resolution", "R", options.resolution, resolution(),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
-                       ", or 1/2, 1/4 or 1/8:\nvoxels share a pixel, which is softer, not faster, "
-                       "and denser\nwhere thin and opaque things lie along the line of sight\n"
-                       "(default: 1 or 2, chosen from the screen; 1/2 or 1/4 where\nvoxels "
+                       "\n(default: 1 or 2, chosen from the screen; 1/2 or 1/4 where\nvoxels "
                        "beside each other are joined)");
     group.addValue("--filter", "NAME", options.filter, pictureFilter(),
                    withDefault("What makes pixels of the rendered plane: catmull-rom (sharp),\n"

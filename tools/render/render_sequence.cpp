@@ -329,14 +329,6 @@ int workersFor(const RenderCommand& command, const SequenceLook& look) {
     return std::max(1, int(std::min(double(threadCount()), picturesThatFit(command, look))));
 }
 
-// Whether a frame may be made of what the one before has left: one camera sees them all, and there
-// is memory for a frame more than are made at once.
-bool mayBeChained(const RenderCommand& command, const SequenceLook& look) {
-    return !command.turntable && !cameraMoves(command.picture) &&
-           command.picture.render.mode == Mode::kComposite &&
-           picturesThatFit(command, look) >= workersFor(command, look) + 1;
-}
-
 // Whether greys are chosen by what is in the pictures.
 bool choosesWindow(const RenderCommand& command) {
     return showsWindow(command) && !windowAsked(command);
@@ -383,8 +375,7 @@ void addSequenceOptions(CLI::App& app, RenderCommand& command) {
                    "JSON file of what all frames are shown by alike: the values and the\n"
                    "place of all of them. Made from --frames if it is not there, without\n"
                    "-o that alone; tasks of a farm that have some of the frames each\n"
-                   "share one. With --slab-range what all parts have to know of the\n"
-                   "volume: those of a delta grid then read what they show alone");
+                   "share one");
     addSinkOptions(app, command);
     group.addValue("--poses", "FILE.csv", command.picture.camera.posesFile, anyText(),
                    "C-arm: a line of numbers for each frame, under the names primary\n"
@@ -471,8 +462,6 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
     if (first != frames.end() && seesOneThing(command))
         prepared = prepareOnce(commandOf(fixed, *first, {}), look, making);
     const bool ownFunctions = hasFunctions(command);
-    std::optional<FrameChain> chain;
-    if (!prepared && frames.size() > 1 && mayBeChained(command, look)) chain.emplace(frames.size());
     try {
         runFrames(
             frames, command.frames.keepGoing, workersFor(command, look),
@@ -483,10 +472,8 @@ void renderSequence(const RenderCommand& command, SequenceSinks& sinks, const Li
                                       {},
                                       sinks.areWritten(),
                                       frames[i].frame};
-                std::optional<FrameChain::Frame> behind;
                 if (sinks.any()) sequence.take = [&](const Image& image) { sinks.put(i, image); };
                 try {
-                    if (chain) sequence.behind = &behind.emplace(chain->begin(i));
                     const RenderCommand one = commandOf(fixed, frames[i], stats);
                     std::optional<PreparedScene> seen;
                     if (prepared && ownFunctions && frames[i].frame != first->frame)

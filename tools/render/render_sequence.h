@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 
-#include "deltasplat/frame_chain.h"
 #include "deltasplat/prepared_scene.h"
 #include "render/render_options.h"
 #include "render/sequence_sinks.h"
@@ -24,7 +23,6 @@ struct SequencePart {
     std::function<void(const Image& image)> take;
     bool isWritten = true;  ///< whether it has a file of its own
     std::optional<int> frame = {};
-    FrameChain::Frame* behind = nullptr;  ///< renders it behind another, if that may be
     bool endsProgram = false;  ///< whether nothing comes after it: what it is of need not be freed
 };
 

@@ -105,10 +105,6 @@ std::string statsJson(const RenderResult& result, const Volume& volume, const Re
                         {"samples", deep.samples},
                         {"most_samples", deep.mostSamples}};
     }
-    if (stats.changed) {
-        json["changed"] = *stats.changed;
-        json["kept"] = stats.kept;
-    }
     json.update(placeJson(volume));
     // Not those of a front view, but the picture's own.
     json["target"] = vectorJson(result.camera.targetWorld);

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "deltasplat/error.h"
-#include "deltasplat/slab_facts.h"
 #include "listener_part.h"
 #include "lower_case.h"
 #include "number_text.h"
@@ -74,8 +73,7 @@ Notes optionsOf(const CLI::App& app) {
         const std::string name = nameOf(*option);
         const bool isOfPicture =
             option->count() > 0 && option->get_group() != std::string(kCommonTitle) &&
-            !option->get_positional() &&
-            !contains({"--output", "--slab-range", "--first-pass", "--confine"}, name);
+            !option->get_positional() && !contains({"--output", "--slab-range", "--confine"}, name);
         if (!isOfPicture) continue;
         std::string text;
         for (const std::string& value : option->results())
@@ -101,8 +99,9 @@ void applySlabs(const CLI::App& app, const RenderCommand& command) {
         "--float",        "--bits",        "--dither",        "--exposure",   "--tone",
         "--ocio",         "--look",        "--working-space", "--colorspace", "--display",
         "--display-view", "--compression", "--autocrop",      "--region",     "--background"};
-    const std::vector<std::string> used = {"--output", "--overscan", "--slab-range",
-                                           "--first-pass"};
+    const std::vector<std::string> used = {"--output", "--overscan", "--slab-range"};
+    if (!command.firstPass.empty())
+        refuse("--first-pass besides", "it alone: each part reads the whole volume");
     for (const CLI::Option* option : app.get_options()) {
         if (option->count() == 0) continue;
         const std::string name = nameOf(*option);
@@ -120,16 +119,6 @@ void applySlabs(const CLI::App& app, const RenderCommand& command) {
         refuse("--output " + command.output.string(), "a .slabs file");
 }
 
-VolumeReader slabReader(const CLI::App& app, const RenderCommand& command) {
-    if (command.firstPass.empty() || !std::filesystem::exists(command.firstPass)) return {};
-    return [&app, &command](const std::filesystem::path& input, const ReadOptions& reading,
-                            const Listener& listener) {
-        std::optional<Volume> volume = readSlabVolume(input, reading, command.firstPass,
-                                                      optionsOf(app), *command.slabs, listener);
-        return volume ? std::move(*volume) : readVolume(input, reading, listener);
-    };
-}
-
 void writeSlabs(const CLI::App& app, const RenderCommand& command, const ReadScene& scene,
                 const Session& session, const Listener& listener) {
     SplatOptions splat = scene.options;
@@ -140,10 +129,6 @@ void writeSlabs(const CLI::App& app, const RenderCommand& command, const ReadSce
     const Camera camera =
         makeCamera(scene.options.camera, seen.box, seen.worldFromIndex, seen.space);
     const LayeredPicture picture(prepared, camera, partOf(listener, 0, kPrepareShare));
-    if (!command.firstPass.empty() && !std::filesystem::exists(command.firstPass)) {
-        makeFolderOf(command.firstPass);
-        writeSlabFacts(picture, optionsOf(app), command.input, command.firstPass);
-    }
     const CodeText codes = codesOf(*scene.volume);
     PartNotes notes{optionsOf(app), commonMetadata(session)};
     notes.picture.insert(notes.picture.begin(), notes.part.front());

@@ -17,25 +17,16 @@ struct Footprint {
     static constexpr std::int32_t kOne = 32767;  ///< what the weights of one phase add up to
 
     int resolution = 1;  ///< r: sheet pixels a voxel
-    /// 1 / r where voxels share a sheet pixel: 2, 4 or 8, and `resolution` is 1. Pixels then lie in
-    /// the middle of so many voxels each way, their *cell*, and weights are a tent that is two
-    /// pixels wide: what lies between the middles of two pixels is shared by them in proportion.
-    int voxelsPerPixel = 1;
-    int width = 1;  ///< and height, in sheet pixels; of a cell's voxels together
+    int width = 1;       ///< and height, in sheet pixels
     /// `[width][width]`, the voxel's centre in the middle. None is negative. For each of the r * r
     /// phases (places modulo r), the weights add up to exactly kOne: a constant slice gives a
-    /// constant sheet. Empty where voxels share a pixel.
+    /// constant sheet.
     std::vector<std::int32_t> weights;
 
     /// Sheet pixels from the one at the voxel's centre, or half a pixel behind it, to the first.
     int reach() const { return width / 2; }
-    /// How far behind a voxel's centre, of a cell its first one's, its sheet pixel lies.
-    double offsetPixels() const {
-        return width % 2 == 0 ? 0.5 : 0.5 * (voxelsPerPixel - 1) / voxelsPerPixel;
-    }
-    double pixelsPerVoxel() const { return double(resolution) / voxelsPerPixel; }
-    /// What weights add up to.
-    double one() const { return voxelsPerPixel > 1 ? 32768 : kOne; }
+    /// How far behind a voxel's centre its sheet pixel lies.
+    double offsetPixels() const { return width % 2 == 0 ? 0.5 : 0; }
     std::int32_t at(int x, int y) const { return weights[y * width + x]; }
 
     bool operator==(const Footprint&) const = default;
@@ -74,14 +65,6 @@ inline double defaultSigma(double pixelsPerVoxel, double resolution) {
 /// @throw Error(kUsage) if sigma or width is out of range
 Footprint makeFootprint(double sigmaVoxels, glm::dvec2 shiftPerSlice, int resolution,
                         std::optional<int> width = {}, int perVoxel = 1);
-/// Makes the footprint of voxels that share sheet pixels.
-/// @param voxelsPerPixel  2, 4 or 8
-inline Footprint makeCoarseFootprint(int voxelsPerPixel) {
-    Footprint footprint;
-    footprint.voxelsPerPixel = voxelsPerPixel;
-    footprint.width = 3;
-    return footprint;
-}
 inline constexpr double kFootprintTail = 0.002;
 inline constexpr int kMaxFootprintWidth = 1024;
 

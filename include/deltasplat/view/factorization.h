@@ -54,10 +54,8 @@ struct Factorization {
 };
 
 inline constexpr int kMaxResolution = 16;
-/// Most voxels that a sheet pixel has along an axis.
-inline constexpr int kMostVoxelsPerPixel = 8;
 
-/// Whether a sheet may have so many pixels a voxel: 1/8, 1/4, 1/2 or 1..kMaxResolution.
+/// Whether a sheet may have so many pixels per voxel: 1, 2 and so on up to kMaxResolution.
 bool isResolution(double resolution);
 
 /// Factors the camera's projection of a volume.
@@ -66,8 +64,7 @@ bool isResolution(double resolution);
 /// that rounding neither chooses an axis nor tilts a straight view.
 /// @param camera      a parallel one
 /// @param resolution  as isResolution says, or empty: 1 where the screen has fewer than one and a
-/// half pixels a voxel, else 2, and never less than 1: where voxels share sheet pixels, what is
-/// dense and thin along the line of sight looks denser
+/// half pixels a voxel, else 2
 /// @throw Error(kUsage) if the resolution is out of range;
 ///        Error(kInput) if worldFromIndex is not finite or cannot be inverted
 Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,

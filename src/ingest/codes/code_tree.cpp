@@ -150,15 +150,18 @@ const CodeTree::Tree& CodeTree::tree() const {
 
 const CodeTree::Tree& CodeTree::nodes() const {
     if (!blocks_ || hasTree_.load(std::memory_order_acquire)) return tree_;
-    if (blocks_->facts()) {
-        throw Error(ErrorCode::kFailed, gotExpected("volume", "some slices of a delta grid alone",
-                                                    "a picture that is seen along these"));
-    }
     const std::lock_guard lock(mutex_);
     // Work taken on while waiting here might want the same tree.
     if (!hasTree_.load(std::memory_order_relaxed)) {
         isolated([&] {
-            leaves_.store(std::make_shared<const std::vector<CodeLeaf>>(fillTree(*blocks_, tree_)));
+            try {
+                leaves_.store(
+                    std::make_shared<const std::vector<CodeLeaf>>(fillTree(*blocks_, tree_)));
+            } catch (...) {
+                // The next call fills it anew.
+                tree_.clear();
+                throw;
+            }
         });
     }
     hasTree_.store(true, std::memory_order_release);

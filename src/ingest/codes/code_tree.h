@@ -52,7 +52,7 @@ struct CodeTree {
     Tree& tree() { return tree_; }
     /// Thread-safe. Of one made of blocks the first call makes the tree; leaves that are left to be
     /// read are read.
-    /// @throw Error(kFailed) if these are some slices of a volume only; what readLeaves throws
+    /// @throw what readLeaves throws
     const Tree& tree() const;
     /// Does the same for who looks at nodes, tiles and masks alone: no leaf is read.
     const Tree& nodes() const;

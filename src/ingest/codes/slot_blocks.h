@@ -17,7 +17,6 @@
 namespace deltasplat {
 
 class SeenCodes;
-struct SlabFacts;
 
 /// A slot in 16 bits: 0 = empty, else code + 1; for codes below 65535.
 using ShortSlot = std::uint16_t;
@@ -89,10 +88,6 @@ class SlotBlocks {
     /// Returns how much memory blocks take, without making any.
     std::size_t memoryBytes() const;
 
-    /// What is known of the whole volume, if these are the blocks of some slices only; else null.
-    const SlabFacts* facts() const { return facts_.get(); }
-    void setFacts(std::shared_ptr<const SlabFacts> facts) { facts_ = std::move(facts); }
-
   private:
     // Blocks, and where columns of a rectangle of u and v begin among them.
     struct Columns;
@@ -102,7 +97,6 @@ class SlotBlocks {
     void makeParts(const std::vector<std::size_t>& parts, const SeenCodes* seen) const;
 
     int sliceAxis_;
-    std::shared_ptr<const SlabFacts> facts_;
     mutable std::mutex mutex_;
     mutable SlotStorage storage_;
     mutable Blocks blocks_;                            // those made so far

@@ -17,26 +17,16 @@
 
 namespace deltasplat {
 
-BlockLayout::BlockLayout(const DeltaHeader& header, const std::optional<glm::ivec2>& wanted)
+BlockLayout::BlockLayout(const DeltaHeader& header)
     : first(toSliceOrder(header.box.min, header.sliceAxis)),
       last(toSliceOrder(header.box.max, header.sliceAxis)),
       firstBlock(first >> 3),
       lastBlock(last >> 3),
-      blocksPerSlab(header.keyInterval / 8) {
-    const int firstWanted = wanted ? std::max(wanted->x, firstBlock.x) : firstBlock.x;
-    readFirst = firstBlock.x + slabOf(firstWanted) * blocksPerSlab;
-    keptFirst = firstWanted;
-    keptLast = wanted ? std::min(wanted->y, lastBlock.x) : lastBlock.x;
-}
+      blocksPerSlab(header.keyInterval / 8) {}
 
 glm::ivec2 BlockLayout::blocksOf(int slab) const {
     const int begin = firstBlock.x + slab * blocksPerSlab;
     return {begin, std::min(begin + blocksPerSlab - 1, lastBlock.x)};
-}
-
-bool BlockLayout::isRead(int slab) const {
-    const glm::ivec2 blocks = blocksOf(slab);
-    return blocks.x >= readFirst && blocks.y <= keptLast;
 }
 
 double BlockLayout::columns() const {
@@ -60,7 +50,7 @@ std::uint64_t BlockLayout::insideOf(const glm::ivec2& place) const {
 }
 
 bool BlockLayout::canListRest(std::size_t changed) const {
-    const double slices = keptLast - readFirst + 1;
+    const double slices = lastBlock.x - firstBlock.x + 1;
     return slices * columns() <= 16.0 * double(changed) + 65536;
 }
 
@@ -140,14 +130,13 @@ bool ColumnDecoder::decode(const DeltaColumn& column, const glm::ivec2& range,
         if (!deltas || !decodeBlock(position, deltas, blocks)) return false;
         isZero = isConstant() && slots_[0] == 0;
     }
-    return walker_->block() == DeltaWalker::kNoBlock || !grid_.layout.isWhole();
+    return walker_->block() == DeltaWalker::kNoBlock;
 }
 
 // Adds blocks without deltas, up to one, of which each shows what the one before it does. Where the
 // first is left out, all are, however many there are.
 bool ColumnDecoder::decodeAlike(glm::ivec3 position, int end, std::vector<SlotBlock>& blocks) {
     const BlockLayout& layout = grid_.layout;
-    position.x = std::max(position.x, std::min(layout.keptFirst, end));
     while (position.x < end) {
         const std::size_t before = blocks.size();
         const std::uint64_t activeBefore = activeCount_;
@@ -171,7 +160,7 @@ bool ColumnDecoder::decodeBlock(const glm::ivec3& position, const BlockDeltas* d
                          layout.hasSlice(8 * position.x + 7);
     if (!deltas && isWhole && isConstant()) {
         const ShortSlot slot = shown(slots_[0]);
-        if (slot == 0 || position.x < layout.keptFirst) return true;
+        if (slot == 0) return true;
         return addTile(position, slot, blocks);
     }
     ShortSlot* out = room();
@@ -181,7 +170,6 @@ bool ColumnDecoder::decodeBlock(const glm::ivec3& position, const BlockDeltas* d
         for (int s = 0; s < 8; ++s)
             if (!writeSlice(position, s, out + 64 * s)) return false;
     }
-    if (position.x < layout.keptFirst) return true;
     const SlotRange range = rangeOf(out);
     if (range.highest == 0) return true;
     const auto tile = ShortSlot(range.highest);

@@ -24,11 +24,10 @@ namespace deltasplat {
 class SeenCodes;
 struct DeltaHeader;
 
-/// Where the blocks of a delta grid lie, in (slice, u, v) order, and which of them are read.
+/// Where the blocks of a delta grid lie, in (slice, u, v) order.
 class BlockLayout {
   public:
-    /// @param wanted  blocks of 8 slices, first and last; none: all
-    BlockLayout(const DeltaHeader& header, const std::optional<glm::ivec2>& wanted);
+    explicit BlockLayout(const DeltaHeader& header);
 
     int slabs() const { return slabOf(lastBlock.x) + 1; }
     int slabOf(int block) const { return (block - firstBlock.x) / blocksPerSlab; }
@@ -37,10 +36,6 @@ class BlockLayout {
     int endOfSlab(int block) const { return blocksOf(slabOf(block)).y + 1; }
     /// Returns the first and the last block of a slab.
     glm::ivec2 blocksOf(int slab) const;
-    /// Whether all of a slab is read.
-    bool isRead(int slab) const;
-    /// Whether all blocks are kept.
-    bool isWhole() const { return keptFirst == firstBlock.x && keptLast == lastBlock.x; }
     /// How many columns the box has, with deltas or without.
     double columns() const;
     bool hasColumn(const glm::ivec2& place) const;
@@ -54,9 +49,6 @@ class BlockLayout {
     glm::ivec3 first, last;  ///< voxels of the box, inclusive
     glm::ivec3 firstBlock, lastBlock;
     int blocksPerSlab;
-    int readFirst;  ///< block of slices that reading begins with
-    int keptFirst;  ///< of those that are kept
-    int keptLast;
 };
 
 /// Returns which slots a delta grid of codes may have.

@@ -62,7 +62,7 @@ std::optional<std::string> problemOf(const CodeRange& range, const DeltaPart& pa
 // @param counts  null, or counts slots
 class TaskDecoder {
   public:
-    TaskDecoder(const DeltaColumns& deltas, const ColumnDecoder::Grid& grid, std::size_t tasks,
+    TaskDecoder(const StreamColumns& deltas, const ColumnDecoder::Grid& grid, std::size_t tasks,
                 bool counts)
         : grid_(grid) {
         // What a thread keeps is large: one for each, not for each piece of work.
@@ -156,8 +156,7 @@ IndexBox inVolume(const IndexBox& box, int sliceAxis) {
 }
 
 // Puts together what the threads found; returns whether it is what the header says.
-bool collect(TaskDecoder& decoder, const DeltaHeader& header, const BlockLayout& layout,
-             DecodedBlocks& decoded) {
+bool collect(TaskDecoder& decoder, const DeltaHeader& header, DecodedBlocks& decoded) {
     decoded.histogram = takeHistogram(*decoder.counts());
     std::vector<std::uint64_t> slabDeltas(header.slabDeltas.size());
     IndexBox active;
@@ -169,19 +168,14 @@ bool collect(TaskDecoder& decoder, const DeltaHeader& header, const BlockLayout&
         active = boxOfBoth(active, one.active());
     }
     decoded.active = inVolume(active, header.sliceAxis);
-    for (int slab = 0; slab < layout.slabs(); ++slab) {
-        const auto i = std::size_t(slab);
-        if (layout.isRead(slab) && slabDeltas[i] != header.slabDeltas[i]) return false;
-    }
-    return !layout.isWhole() || count == header.active;
+    return slabDeltas == header.slabDeltas && count == header.active;
 }
 
 // Whether a header and the places of deltas go together.
-bool mayBeSound(const DeltaColumns& deltas, const DeltaHeader& header, const BlockLayout& layout,
+bool mayBeSound(const StreamColumns& deltas, const DeltaHeader& header, const BlockLayout& layout,
                 const SlotRules& rules) {
     const auto isInside = [&](const DeltaColumn& column) { return layout.hasColumn(column.place); };
-    return layout.keptFirst <= layout.keptLast &&
-           header.slabDeltas.size() == std::size_t(layout.slabs()) &&
+    return header.slabDeltas.size() == std::size_t(layout.slabs()) &&
            (!header.restActive || voxelsOf(header.box) == header.active) &&
            (!header.restActive || layout.canListRest(deltas.blocks())) &&
            rules.lowest <= rules.highest &&
@@ -198,7 +192,7 @@ std::vector<Task> tasksOf(const std::vector<DeltaPart>& parts, const BlockLayout
 
 // What the file says of columns, those at rest too if what rests is active: by slabs if it says
 // which codes they have.
-std::vector<DeltaPart> allParts(const DeltaColumns& deltas, const DeltaHeader& header,
+std::vector<DeltaPart> allParts(const StreamColumns& deltas, const DeltaHeader& header,
                                 const BlockLayout& layout, const SlotRules& rules,
                                 const std::string& where) {
     const KnownCodes* const known = deltas.knownCodes();
@@ -220,12 +214,12 @@ std::vector<DeltaPart> allParts(const DeltaColumns& deltas, const DeltaHeader& h
 // Decodes what a file says the codes of, when it is asked for.
 class PartMaker : public BlockMaker {
   public:
-    PartMaker(std::shared_ptr<const DeltaHeader> header, std::unique_ptr<const DeltaColumns> deltas,
-              const std::string& where)
+    PartMaker(std::shared_ptr<const DeltaHeader> header,
+              std::unique_ptr<const StreamColumns> deltas, const std::string& where)
         : header_(std::move(header)),
           deltas_(std::move(deltas)),
           where_(where),
-          layout_(*header_, std::nullopt),
+          layout_(*header_),
           rules_(slotRulesOf(*header_)),
           deltaParts_(allParts(*deltas_, *header_, layout_, rules_, where)) {
         requireMemory(where, double(deltaParts_.size()) * sizeof(Part));
@@ -283,7 +277,7 @@ class PartMaker : public BlockMaker {
     }
 
     std::shared_ptr<const DeltaHeader> header_;
-    std::unique_ptr<const DeltaColumns> deltas_;
+    std::unique_ptr<const StreamColumns> deltas_;
     std::string where_;
     BlockLayout layout_;
     SlotRules rules_;
@@ -294,13 +288,9 @@ class PartMaker : public BlockMaker {
 
 }  // namespace
 
-int slabStart(const DeltaHeader& header, int block) {
-    return BlockLayout(header, glm::ivec2(block)).readFirst;
-}
-
 bool mayDecodeBlocks(const DeltaHeader& header) {
-    return !header.exact && header.hasZigzag() && header.codeCount < kCodeCount &&
-           !header.box.empty() && (!header.restActive || header.inactiveValues.empty());
+    return !header.exact && header.codeCount < kCodeCount && !header.box.empty() &&
+           (!header.restActive || header.inactiveValues.empty());
 }
 
 void requireKnownCodes(const CodesInUse& said, const CodesInUse& found, const std::string& where) {
@@ -313,25 +303,23 @@ void requireKnownCodes(const CodesInUse& said, const CodesInUse& found, const st
         refuse("another box of active voxels", "the one that the stream says");
 }
 
-std::optional<DecodedBlocks> decodeBlocks(const DeltaColumns& deltas, const DeltaHeader& header,
-                                          const std::string& where,
-                                          const std::optional<glm::ivec2>& wanted,
-                                          const Listener& listener) {
-    const BlockLayout layout(header, wanted);
+std::optional<DecodedBlocks> decodeBlocks(const StreamColumns& deltas, const DeltaHeader& header,
+                                          const std::string& where, const Listener& listener) {
+    const BlockLayout layout(header);
     const SlotRules rules = slotRulesOf(header);
     if (!mayBeSound(deltas, header, layout, rules)) return std::nullopt;
     const KnownCodes* const known = deltas.knownCodes();
     const std::vector<DeltaPart> parts = allParts(deltas, header, layout, rules, where);
     std::vector<Task> tasks = tasksOf(parts, layout);
     if (!known) {
-        for (Task& task : tasks) task = {task.column, {layout.readFirst, layout.keptLast}};
+        for (Task& task : tasks) task = {task.column, {layout.firstBlock.x, layout.lastBlock.x}};
     }
     // Nearly all of them become blocks; how many more there are is seen on the way.
     requireMemory(where, double(deltas.blocks()) * 512 * sizeof(ShortSlot));
     TaskDecoder decoder(deltas, {header, layout, rules, where}, tasks.size(), true);
     std::optional<std::vector<SlotBlock>> blocks = decoder.decode(tasks, listener);
     DecodedBlocks decoded;
-    if (!blocks || !collect(decoder, header, layout, decoded)) return std::nullopt;
+    if (!blocks || !collect(decoder, header, decoded)) return std::nullopt;
     if (known) {
         const IndexBox& active = header.restActive ? header.box : decoded.active;
         requireKnownCodes(known->all, {decoded.histogram, active}, where);
@@ -344,10 +332,10 @@ std::optional<DecodedBlocks> decodeBlocks(const DeltaColumns& deltas, const Delt
 }
 
 std::shared_ptr<SlotBlocks> decodeLater(std::shared_ptr<const DeltaHeader> header,
-                                        std::unique_ptr<const DeltaColumns> deltas,
+                                        std::unique_ptr<const StreamColumns> deltas,
                                         const std::string& where) {
     if (!deltas->knownCodes() ||
-        !mayBeSound(*deltas, *header, BlockLayout(*header, std::nullopt), slotRulesOf(*header)))
+        !mayBeSound(*deltas, *header, BlockLayout(*header), slotRulesOf(*header)))
         return nullptr;
     const int sliceAxis = header->sliceAxis;
     return std::make_shared<SlotBlocks>(

@@ -49,14 +49,11 @@ class CodeWords {
     explicit CodeWords(const DeltaHeader& header)
         : header_(header),
           codeCount_(Slot(header.codeCount)),
-          hasZigzag_(header.hasZigzag()),
           isHalf_(header.book.kind == CodeBook::Kind::kHalf) {
         if (header.restActive) rest_ = header.book.codeOf(header.background);
     }
 
-    Slot sum(Slot slot, std::int32_t delta) const {
-        return slot + Slot(hasZigzag_ ? fromZigzag(delta) : delta);
-    }
+    Slot sum(Slot slot, std::int32_t delta) const { return slot + Slot(fromZigzag(delta)); }
     bool isValue(Slot slot) const {
         return slot - 1 < codeCount_ && (!isHalf_ || isFiniteCode(slot));
     }
@@ -77,7 +74,6 @@ class CodeWords {
 
     const DeltaHeader& header_;
     Slot codeCount_;
-    bool hasZigzag_;
     bool isHalf_;
     Code rest_ = 0;
 };

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <limits>
-#include <memory>
 #include <vector>
 
 #include "deltasplat/ingest/volume.h"
@@ -63,23 +62,6 @@ struct CodesInUse {
 struct KnownCodes {
     std::vector<DeltaPart> parts;  ///< those that have deltas, by u, v and slab
     CodesInUse all;
-};
-
-/// The deltas of a volume as a file has them, packed.
-class DeltaColumns {
-  public:
-    DeltaColumns() = default;
-    DeltaColumns(DeltaColumns&&) = default;
-    DeltaColumns& operator=(DeltaColumns&&) = default;
-    virtual ~DeltaColumns() = default;
-    /// Those that have deltas, by u and v.
-    virtual const std::vector<DeltaColumn>& columns() const = 0;
-    /// How many blocks have deltas, at most.
-    virtual std::size_t blocks() const = 0;
-    /// Null if the file does not say, or not all of it was read.
-    virtual const KnownCodes* knownCodes() const { return nullptr; }
-    /// Returns what one thread unpacks columns with. Thread-safe.
-    virtual std::unique_ptr<DeltaWalker> walker() const = 0;
 };
 
 }  // namespace deltasplat

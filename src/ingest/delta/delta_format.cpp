@@ -128,8 +128,7 @@ std::vector<CodeBook::Piece> takePieces(const Entries& entries) {
 void takeBook(const Entries& entries, DeltaHeader& header) {
     std::vector<std::string> names = {"integer", "half", "linear", "table", "pieces"};
     const int books = int(names.size());
-    if (header.version >= 4)
-        names.insert(names.end(), std::begin(kExactNames), std::end(kExactNames));
+    names.insert(names.end(), std::begin(kExactNames), std::end(kExactNames));
     const int book = entries.choice("delta_code_book", names);
     if (book >= books) {
         header.exact = ExactValues(book - books);
@@ -315,14 +314,12 @@ bool isDeltaGrid(const std::string& valueType, const VdbMetadata& metadata) {
 
 void putDeltaHeader(const DeltaHeader& header, VdbMetadata& metadata) {
     VdbMetadata entries = allEntries(header);
-    if (header.leavesOutUsual()) {
-        const VdbMetadata usual = usualEntries();
-        for (const auto& [name, entry] : usual.entries()) {
-            const VdbMetadata::Entry* const own = entries.find(name);
-            if (!own || *own != entry) continue;
-            entries.erase(name);
-            metadata.erase(name);
-        }
+    const VdbMetadata usual = usualEntries();
+    for (const auto& [name, entry] : usual.entries()) {
+        const VdbMetadata::Entry* const own = entries.find(name);
+        if (!own || *own != entry) continue;
+        entries.erase(name);
+        metadata.erase(name);
     }
     for (const auto& [name, entry] : entries.entries()) metadata.insert(name, entry);
 }
@@ -337,9 +334,9 @@ std::uint64_t DeltaHeader::deltas() const {
 
 DeltaHeader takeDeltaHeader(const VdbMetadata& stored, const std::string& where) {
     DeltaHeader header;
-    header.version = Entries(stored, where).whole(kVersionKey, 1, DeltaHeader::kLastVersion);
-    const VdbMetadata whole = header.leavesOutUsual() ? withUsualEntries(stored) : VdbMetadata();
-    const VdbMetadata& metadata = header.leavesOutUsual() ? whole : stored;
+    header.version = Entries(stored, where)
+                         .whole(kVersionKey, DeltaHeader::kVersion, DeltaHeader::kPackedVersion);
+    const VdbMetadata metadata = withUsualEntries(stored);
     const Entries entries(metadata, where);
     header.sliceAxis = entries.choice("delta_slice_axis", {"x", "y", "z"});
     header.keyInterval = entries.whole("delta_key_interval", 8, 1 << 30);

@@ -16,16 +16,10 @@ namespace deltasplat {
 
 /// What a delta grid's metadata says; docs/delta-grid.md specifies it.
 struct DeltaHeader {
-    /// The one that is written of deltas as voxels. Of 1 and 2 (books of pieces) deltas are plain
-    /// numbers; from 3 on they are without sign (ingest/delta/zigzag.h); from 4 on there may be
-    /// exact values, and from 5 on what is usual is left out.
+    /// Of deltas as voxels.
     static constexpr int kVersion = 6;
-    /// The one that is written of packed deltas.
+    /// Of packed deltas.
     static constexpr int kPackedVersion = 7;
-    /// Of packed deltas that do not say which codes they add up to, and lie in no planes.
-    static constexpr int kOldPackedVersion = 5;
-    /// The largest that is read.
-    static constexpr int kLastVersion = 7;
 
     int version = kVersion;
     int sliceAxis = 2;
@@ -50,16 +44,10 @@ struct DeltaHeader {
 
     std::string bookName() const;
     std::uint64_t deltas() const;  ///< of all slabs together
-    bool hasZigzag() const { return version >= 3; }
     /// Whether deltas take 64 bits.
     bool isWide() const { return exact && *exact != ExactValues::kFloat32; }
     /// Whether the grid's voxels are words of a stream (delta_stream.h) in place of deltas.
-    bool isPacked() const { return version == kPackedVersion || version == kOldPackedVersion; }
-    /// Whether a stream may say which codes it adds up to.
-    bool mayKnowCodes() const { return version == kPackedVersion; }
-    /// Whether numbers of a stream lie in planes (plane_kernels.h), not one behind the other.
-    bool hasPlanes() const { return version == kPackedVersion; }
-    bool leavesOutUsual() const { return version >= 5; }
+    bool isPacked() const { return version == kPackedVersion; }
 };
 
 /// Names of the source grid's own metadata in a delta grid begin with this.
@@ -70,7 +58,7 @@ bool isDeltaGrid(const TreeGrid& grid);
 /// Returns the same by a grid's value type ("int32", "int64") and metadata.
 bool isDeltaGrid(const std::string& valueType, const VdbMetadata& metadata);
 
-/// Adds the header to a grid's metadata: where leavesOutUsual(), only what is not usual.
+/// Adds the header to a grid's metadata, but for the entries of an empty grid of floats.
 void putDeltaHeader(const DeltaHeader& header, VdbMetadata& metadata);
 
 /// Reads a delta grid's header and checks everything in it that can be checked without its voxels.

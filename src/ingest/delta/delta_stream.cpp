@@ -36,12 +36,12 @@ void fillLeaf(const BlockDeltasOf<typename Leaf::ValueType>& deltas, Leaf& leaf)
     leaf.setValueMask(mask);
 }
 
-class Unpacker {
+class StreamUnpacker {
   public:
-    Unpacker(const openvdb::Int64Tree& tree, const DeltaHeader& header, const std::string& where)
+    StreamUnpacker(const openvdb::Int64Tree& tree, const DeltaHeader& header, const std::string& where)
         : header_(header), where_(where), words_(wordsOfTree(tree, kStreamPadding, where)) {
         const std::size_t count = words_.size() - kStreamPadding;
-        if (count > 0) index_ = readStreamIndex(words_.data(), count, count, header, where).value();
+        if (count > 0) index_ = readStreamIndex(words_.data(), count, header, where);
     }
 
     const StreamIndex& index() const { return index_; }
@@ -63,7 +63,7 @@ class Unpacker {
 };
 
 template <typename Leaf>
-Unpacker::Leaves<Leaf> Unpacker::takePart(const StreamPart& part) const {
+StreamUnpacker::Leaves<Leaf> StreamUnpacker::takePart(const StreamPart& part) const {
     PartWalker<typename Leaf::ValueType> walker(words_.data(), header_);
     const auto damaged = [&] {
         const glm::ivec3 place = 8 * glm::ivec3(walker.block(), part.first.y, part.first.z);
@@ -84,7 +84,7 @@ Unpacker::Leaves<Leaf> Unpacker::takePart(const StreamPart& part) const {
 }
 
 template <typename Tree>
-std::shared_ptr<Tree> Unpacker::takeDeltas(const Listener& listener) const {
+std::shared_ptr<Tree> StreamUnpacker::takeDeltas(const Listener& listener) const {
     using Leaf = typename Tree::LeafNodeType;
     const std::vector<StreamPart>& parts = index_.parts;
     requireMemory(where_, double(countBlocks(words_.data(), parts)) * leafBytes<Leaf>());
@@ -110,7 +110,7 @@ std::shared_ptr<Tree> Unpacker::takeDeltas(const Listener& listener) const {
 
 UnpackedDeltas unpackDeltas(const TreeGrid& grid, const DeltaHeader& header,
                             const std::string& where, const Listener& listener) {
-    const Unpacker unpacker(*grid.as<openvdb::Int64Tree>(), header, where);
+    const StreamUnpacker unpacker(*grid.as<openvdb::Int64Tree>(), header, where);
     UnpackedDeltas deltas{{nullptr, grid.metadata, grid.map}, codesInUse(unpacker.index(), header)};
     if (header.isWide()) {
         deltas.grid.tree = unpacker.takeDeltas<openvdb::Int64Tree>(listener);

@@ -28,7 +28,6 @@ class PartWalker {
         : words_(words),
           lastBlock_(toSliceOrder(header.box.max, header.sliceAxis).x >> 3),
           blocksPerSlab_(header.keyInterval / 8),
-          hasPlanes_(header.hasPlanes()),
           code_{deltaWidth(header)},
           in_(words, 0) {}
 
@@ -76,14 +75,14 @@ class PartWalker {
             if (in_.take(1) == 0) continue;
             const auto form = SliceForm(in_.take(2));
             const auto parameter = int(in_.take(code_.parameterBits()));
-            if (hasPlanes_ && parameter >= code_.width) return false;
+            if (parameter >= code_.width) return false;
             if (form == SliceForm::kAll) {
                 deltas_.given[s] = ~std::uint64_t{0};
-                deltas_.changed[s] = takeSome(parameter, 64, numbers);
+                deltas_.changed[s] = takePlanes(in_, code_, parameter, 64, numbers);
             } else if (form == SliceForm::kMask || form == SliceForm::kRows) {
                 const std::uint64_t mask = form == SliceForm::kMask ? in_.take(64) : takeRows();
                 const auto count = std::size_t(std::popcount(mask));
-                if (count > 0) takeSome(parameter, count, numbers);
+                if (count > 0) takePlanes(in_, code_, parameter, count, numbers);
                 for (std::size_t i = 0; i < count; ++i) ++numbers[i];
                 deltas_.given[s] = deltas_.changed[s] = mask;
             } else {
@@ -96,17 +95,6 @@ class PartWalker {
         return any != 0;
     }
 
-    // Returns which are not 0.
-    std::uint64_t takeSome(int parameter, std::size_t count, Bits* numbers) {
-        if (hasPlanes_) return takePlanes(in_, code_, parameter, count, numbers);
-        std::uint64_t any = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            numbers[i] = Bits(code_.take(in_, parameter));
-            any |= std::uint64_t{numbers[i] != 0} << i;
-        }
-        return any;
-    }
-
     std::uint64_t takeRows() {
         std::uint64_t changed = 0;
         for (std::uint64_t rows = in_.take(8); rows != 0; rows &= rows - 1)
@@ -117,7 +105,6 @@ class PartWalker {
     const std::uint64_t* words_;
     int lastBlock_;
     int blocksPerSlab_;
-    bool hasPlanes_;
     RiceCode code_;
 
     // Of the part in hand.

@@ -3,9 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
-#include <glm/common.hpp>
 #include <glm/matrix.hpp>
-#include <glm/vector_relational.hpp>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -17,7 +15,6 @@
 #include "ingest/delta/decode_blocks.h"
 #include "ingest/delta/decode_deltas.h"
 #include "ingest/delta/delta_stream.h"
-#include "ingest/delta/leaf_columns.h"
 #include "ingest/delta/read_exact_deltas.h"
 #include "ingest/delta/restored_grid.h"
 #include "ingest/delta/stream_columns.h"
@@ -105,41 +102,6 @@ void fillVolume(const DeltaHeader& header, std::shared_ptr<const CodeTree> codes
     summarize(volume);
 }
 
-// Returns the first and the last of the blocks of slices that wanted ones add up from.
-std::optional<glm::ivec2> blocksToRead(const DeltaHeader& header, const SlicesWanted* wanted) {
-    if (!wanted) return std::nullopt;
-    const int first = toSliceOrder(header.box.min, header.sliceAxis).x >> 3;
-    const int last = toSliceOrder(header.box.max, header.sliceAxis).x >> 3;
-    const glm::ivec2 blocks = glm::clamp(wanted->blocks, first, last);
-    return glm::ivec2(slabStart(header, blocks.x), blocks.y);
-}
-
-// Reads what of a delta grid is wanted, which stays packed.
-// @param leaves  of all the grid; outlives what is returned
-// @return null if it has to be read as a whole
-std::unique_ptr<const DeltaColumns> columnsOf(VdbLeaves& leaves, const DeltaHeader& header,
-                                              const SlicesWanted* wanted,
-                                              const std::string& where) {
-    const std::optional<glm::ivec2> blocks = blocksToRead(header, wanted);
-    if (header.isPacked()) {
-        auto stream = StreamColumns::read(leaves, header, blocks, where);
-        if (!stream) return nullptr;
-        return std::make_unique<StreamColumns>(std::move(*stream));
-    }
-    if (blocks) leaves.keep(8 * blocks->x, 8 * blocks->y + 7);
-    requireMemory(where, double(leaves.bytes()));
-    leaves.hold();
-    return std::make_unique<LeafColumns>(leaves);
-}
-
-// What is said of a whole volume may come from anywhere.
-bool mayBeBoxOf(const DeltaHeader& header, const IndexBox& box) {
-    const IndexBox& all = header.box;
-    if (header.restActive) return box == all;
-    return !box.empty() && glm::all(glm::greaterThanEqual(box.min, all.min)) &&
-           glm::all(glm::lessThanEqual(box.max, all.max));
-}
-
 }  // namespace
 
 Volume readDeltaGrid(TreeGrid& stored, const VdbMetadata& fileMetadata, const std::string& where,
@@ -191,12 +153,11 @@ Volume readDeltaGrid(TreeGrid& stored, const VdbMetadata& fileMetadata, const st
 
 std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
                                       const std::string& where, const ReadOptions& options,
-                                      const Listener& listener, const SlicesWanted* wanted) {
-    if (grid.type != "int32" && grid.type != "int64") return std::nullopt;
+                                      const Listener& listener) {
+    if (grid.type != "int64") return std::nullopt;
     const auto known = std::make_shared<DeltaHeader>();
     DeltaHeader& header = *known;
-    std::optional<VdbLeaves> leaves;
-    std::unique_ptr<const DeltaColumns> columns;
+    std::unique_ptr<const StreamColumns> columns;
     Volume volume;
     try {
         const VdbMetadata metadata = file.metadata(grid);
@@ -204,17 +165,15 @@ std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
         header = takeDeltaHeader(metadata, where);
         const bool changes = (options.levelSetToFog || options.levelSetSurface) &&
                              sourceClass(metadata) == kLevelSetClass;
-        if (!mayDecodeBlocks(header) || changes) return std::nullopt;
+        if (!header.isPacked() || !mayDecodeBlocks(header) || changes) return std::nullopt;
         // Exact codes say all of a volume without empty places.
         const bool codesAreAll = header.restActive && header.book.isExact();
         if (options.keepSource && !codesAreAll) return std::nullopt;
-        if ((grid.type == "int64") != header.isPacked()) return std::nullopt;
-        if (wanted && !mayBeBoxOf(header, wanted->box)) return std::nullopt;
-        leaves =
-            file.readLeaves(grid, wanted ? VdbFile::Find::kByNotesAlone : VdbFile::Find::kByNotes);
+        const std::optional<VdbLeaves> leaves = file.readLeaves(grid, VdbFile::Find::kByNotes);
         if (!leaves) return std::nullopt;
-        columns = columnsOf(*leaves, header, wanted, where);
-        if (!columns) return std::nullopt;
+        auto stream = StreamColumns::read(*leaves, header, where);
+        if (!stream) return std::nullopt;
+        columns = std::make_unique<StreamColumns>(std::move(*stream));
         worldFromIndexOf(leaves->transform(), where);
         volume = describe(header, metadata, leaves->transform(), where);
     } catch (const Error& error) {
@@ -230,14 +189,8 @@ std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
                    std::move(all.histogram), all.active, volume);
         return volume;
     }
-    const std::optional<glm::ivec2> blocks = wanted ? std::optional(wanted->blocks) : std::nullopt;
-    std::optional<DecodedBlocks> decoded = decodeBlocks(*columns, header, where, blocks, listener);
+    std::optional<DecodedBlocks> decoded = decodeBlocks(*columns, header, where, listener);
     if (!decoded) return std::nullopt;
-    if (wanted) {
-        decoded->blocks->setFacts(wanted->facts);
-        decoded->histogram = wanted->histogram;
-        decoded->active = wanted->box;
-    }
     fillVolume(header, std::make_shared<const CodeTree>(std::move(decoded->blocks)),
                std::move(decoded->histogram), decoded->active, volume);
     if (volume.activeCount != header.active) return std::nullopt;

@@ -6,7 +6,6 @@
 
 #include "deltasplat/ingest/read_volume.h"
 #include "ingest/grids/tree_grid.h"
-#include "ingest/vdb/read_slices.h"
 #include "ingest/vdb/vdb_file.h"
 
 namespace deltasplat {
@@ -18,15 +17,13 @@ namespace deltasplat {
 Volume readDeltaGrid(TreeGrid& grid, const VdbMetadata& fileMetadata, const std::string& where,
                      const ReadOptions& options, const Listener& listener);
 
-/// Reads a delta grid of a file as a volume whose codes are blocks along its slices: the same
-/// volume, without an OpenVDB grid, where nothing of what is asked for needs one (decodeBlocks).
-/// @param wanted  some slices: then no more of the file is read than where deltas lie and the slabs
-///                that hold these slices, of voxels up to the last of them. Null: all.
+/// Reads a packed delta grid of a file as a volume whose codes are blocks along its slices: the
+/// same volume, without an OpenVDB grid, where nothing of what is asked for needs one
+/// (decodeBlocks).
 /// @return nothing where it is another grid, is not sound, or is asked for otherwise
 /// @throw as decodeBlocks
 std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
                                       const std::string& where, const ReadOptions& options,
-                                      const Listener& listener,
-                                      const SlicesWanted* wanted = nullptr);
+                                      const Listener& listener);
 
 }  // namespace deltasplat

@@ -65,43 +65,15 @@ StreamColumns::StreamColumns(UnclearedVector<std::uint64_t> words, StreamIndex i
 }
 
 std::optional<StreamColumns> StreamColumns::read(const VdbLeaves& leaves, const DeltaHeader& header,
-                                                 const std::optional<glm::ivec2>& slices,
                                                  const std::string& where) {
     const std::optional<std::size_t> count = countWords(leaves);
     if (!count) return std::nullopt;
-    constexpr std::size_t kFirstWords = 1024;
+    auto words = wordsOfLeaves(leaves, *count, kStreamPadding, where);
+    if (!words) return std::nullopt;
     StreamIndex index;
-    UnclearedVector<std::uint64_t> words;
-    for (std::size_t some = slices ? kFirstWords : *count;; some *= 4) {
-        some = std::min(some, *count);
-        auto begin = wordsOfLeaves(leaves, 0, some, kStreamPadding, where);
-        if (!begin) return std::nullopt;
-        words = std::move(*begin);
-        if (*count == 0) break;
-        auto found = readStreamIndex(words.data(), some, *count, header, where);
-        if (!found) continue;
-        index = std::move(*found);
-        break;
-    }
-    if (slices) {
-        std::vector<StreamPart>& parts = index.parts;
-        index.histogram.clear();  // that of all
-        std::erase_if(parts, [&](const StreamPart& part) {
-            return part.first.x < slices->x || part.first.x > slices->y;
-        });
-        // Those of some slabs lie together.
-        const std::size_t begin = parts.empty() ? 0 : parts.front().begin;
-        const std::size_t end = parts.empty() ? 0 : parts.back().end;
-        auto wanted = wordsOfLeaves(leaves, begin, end, kStreamPadding, where);
-        if (!wanted) return std::nullopt;
-        words = std::move(*wanted);
-        for (StreamPart& part : parts) {
-            part.begin -= begin;
-            part.end -= begin;
-        }
-    }
+    if (*count > 0) index = readStreamIndex(words->data(), *count, header, where);
     requireMemory(where, double(index.parts.size()) * (sizeof(DeltaColumn) + sizeof(DeltaPart)));
-    return StreamColumns(std::move(words), std::move(index), header);
+    return StreamColumns(std::move(*words), std::move(index), header);
 }
 
 std::unique_ptr<DeltaWalker> StreamColumns::walker() const {

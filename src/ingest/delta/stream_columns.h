@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,25 +16,25 @@
 namespace deltasplat {
 
 /// Packed deltas of 32 bits: a stream whose words are the voxels of a file's leaves.
-class StreamColumns : public DeltaColumns {
+class StreamColumns {
   public:
     /// Reads the words, on all threads.
     /// @param leaves  of int64
     /// @param header  outlives this
-    /// @param slices  blocks of 8 slices, first and last, of which the first begins a slab: no more
-    ///                of the file is read than where its deltas lie and the slabs that hold these.
-    ///                None: all.
     /// @return nothing if the words have gaps
     /// @throw Error(kInput) if the stream says what it cannot; Error(kFailed) if memory does not
     ///        hold it
     static std::optional<StreamColumns> read(const VdbLeaves& leaves, const DeltaHeader& header,
-                                             const std::optional<glm::ivec2>& slices,
                                              const std::string& where);
 
-    const std::vector<DeltaColumn>& columns() const override { return columns_; }
-    std::size_t blocks() const override { return blocks_; }
-    const KnownCodes* knownCodes() const override { return knownCodes_ ? &*knownCodes_ : nullptr; }
-    std::unique_ptr<DeltaWalker> walker() const override;
+    /// Those that have deltas, by u and v.
+    const std::vector<DeltaColumn>& columns() const { return columns_; }
+    /// How many blocks have deltas, at most.
+    std::size_t blocks() const { return blocks_; }
+    /// Null if the file does not say which codes there are.
+    const KnownCodes* knownCodes() const { return knownCodes_ ? &*knownCodes_ : nullptr; }
+    /// Returns what one thread unpacks columns with. Thread-safe.
+    std::unique_ptr<DeltaWalker> walker() const;
 
   private:
     StreamColumns(UnclearedVector<std::uint64_t> words, StreamIndex index,

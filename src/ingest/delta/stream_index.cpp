@@ -19,16 +19,11 @@ namespace {
 
 class IndexReader {
   public:
-    IndexReader(const std::uint64_t* words, std::size_t some, std::size_t count,
-                const DeltaHeader& header, const std::string& where)
-        : header_(header),
-          where_(where),
-          words_(words),
-          some_(some),
-          count_(count),
-          in_(words, 0) {}
+    IndexReader(const std::uint64_t* words, std::size_t count, const DeltaHeader& header,
+                const std::string& where)
+        : header_(header), where_(where), words_(words), count_(count), in_(words, 0) {}
 
-    std::optional<StreamIndex> read();
+    StreamIndex read();
 
   private:
     [[noreturn]] void fail(const std::string& got, const std::string& expected) const {
@@ -44,11 +39,6 @@ class IndexReader {
         if (in_.position() <= 64 * count_) return;
         fail("a stream of " + std::to_string(count_) + " words that ends early", "the rest of it");
     }
-    // Whether the next part's six numbers are there, or two of the histogram.
-    bool mayGoOn() const {
-        constexpr std::size_t kMostBits = 6 * 128;
-        return some_ == count_ || in_.position() + kMostBits <= 64 * some_;
-    }
     // Of each of slab, u and v there is what is more than in the part before, as far as those
     // before it are the same.
     void takePlace(glm::i64vec3& place, const glm::i64vec3& most);
@@ -57,13 +47,11 @@ class IndexReader {
     IndexBox takeBox();
     void requireSum();
     void requireCounted(const StreamIndex& index) const;
-    // Returns nothing if it goes on behind the words.
-    std::optional<std::vector<std::uint64_t>> takeHistogram();
+    std::vector<std::uint64_t> takeHistogram();
 
     const DeltaHeader& header_;
     const std::string& where_;
     const std::uint64_t* words_;
-    std::size_t some_;
     std::size_t count_;
     BitReader in_;
 };
@@ -92,14 +80,13 @@ void IndexReader::takeRange(StreamPart& part) {
     part.highest = Code(lowest + more);
 }
 
-std::optional<std::vector<std::uint64_t>> IndexReader::takeHistogram() {
+std::vector<std::uint64_t> IndexReader::takeHistogram() {
     const auto codes = std::uint64_t(header_.codeCount);
     std::vector<std::uint64_t> histogram(kCodeCount);
     std::uint64_t code = 0;
     std::uint64_t left = header_.active;
     const std::uint64_t number = in_.takeNumber();
     for (std::uint64_t i = 0; i < number; ++i, ++code) {
-        if (!mayGoOn()) return std::nullopt;
         requireBits();
         const std::uint64_t gap = in_.takeNumber();
         const std::uint64_t count = in_.takeNumber();
@@ -150,19 +137,18 @@ void IndexReader::requireCounted(const StreamIndex& index) const {
     }
 }
 
-std::optional<StreamIndex> IndexReader::read() {
+StreamIndex IndexReader::read() {
     const int blocksPerSlab = header_.keyInterval / 8;
     const glm::ivec3 first = toSliceOrder(header_.box.min, header_.sliceAxis) >> 3;
     const glm::ivec3 last = toSliceOrder(header_.box.max, header_.sliceAxis) >> 3;
     glm::i64vec3 place(0, 0, -1);
     glm::i64vec3 most = glm::i64vec3(last) - glm::i64vec3(first);
     most.x /= blocksPerSlab;
-    if (!mayGoOn()) return std::nullopt;
     const std::uint64_t number = in_.takeNumber();
     requireBits();
     if (number > count_) failTooMany(number);
     requireMemory(where_, double(number) * sizeof(StreamPart));
-    const bool knowsCodes = header_.mayKnowCodes() && in_.take(1) == 1;
+    const bool knowsCodes = in_.take(1) == 1;
     if (knowsCodes && header_.exact) fail("a stream of exact values that says its codes", "none");
     StreamIndex index;
     std::vector<StreamPart>& parts = index.parts;
@@ -170,7 +156,6 @@ std::optional<StreamIndex> IndexReader::read() {
     constexpr std::uint64_t kMostNumber = std::uint64_t{1} << 62;
     std::size_t words = 0;
     for (std::uint64_t left = number; left > 0; --left) {
-        if (!mayGoOn()) return std::nullopt;
         requireBits();
         takePlace(place, most);
         const std::uint64_t size = in_.takeNumber();
@@ -182,15 +167,10 @@ std::optional<StreamIndex> IndexReader::read() {
         words = end;
     }
     if (knowsCodes) {
-        if (!mayGoOn()) return std::nullopt;
         requireBits();
-        auto histogram = takeHistogram();
-        if (!histogram) return std::nullopt;
-        index.histogram = std::move(*histogram);
-        if (!mayGoOn()) return std::nullopt;
+        index.histogram = takeHistogram();
         index.active = takeBox();
         in_.skipToWord();
-        if (!mayGoOn()) return std::nullopt;
         requireSum();
         requireCounted(index);
     }
@@ -208,10 +188,9 @@ std::optional<StreamIndex> IndexReader::read() {
 
 }  // namespace
 
-std::optional<StreamIndex> readStreamIndex(const std::uint64_t* words, std::size_t some,
-                                           std::size_t count, const DeltaHeader& header,
-                                           const std::string& where) {
-    return IndexReader(words, some, count, header, where).read();
+StreamIndex readStreamIndex(const std::uint64_t* words, std::size_t count,
+                            const DeltaHeader& header, const std::string& where) {
+    return IndexReader(words, count, header, where).read();
 }
 
 CodesInUse codesInUse(const StreamIndex& index, const DeltaHeader& header) {

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,14 +40,11 @@ struct StreamIndex {
 inline constexpr std::size_t kStreamPadding = 1024;
 
 /// Reads what a stream begins with.
-/// @param words   the first of the stream, `some` of them, with kStreamPadding behind them
-/// @param count   of all words
-/// @return nothing if it goes on behind these words
+/// @param words  all of the stream, `count` of them, with kStreamPadding behind them
 /// @throw Error(kInput) if the stream says what it cannot; Error(kFailed) if memory does not hold
-/// it
-std::optional<StreamIndex> readStreamIndex(const std::uint64_t* words, std::size_t some,
-                                           std::size_t count, const DeltaHeader& header,
-                                           const std::string& where);
+///        the parts
+StreamIndex readStreamIndex(const std::uint64_t* words, std::size_t count,
+                            const DeltaHeader& header, const std::string& where);
 
 /// Returns what a stream says of all its codes.
 CodesInUse codesInUse(const StreamIndex& index, const DeltaHeader& header);

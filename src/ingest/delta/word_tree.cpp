@@ -116,32 +116,26 @@ std::optional<std::size_t> countWords(const VdbLeaves& leaves) {
 }
 
 std::optional<UnclearedVector<std::uint64_t>> wordsOfLeaves(const VdbLeaves& leaves,
-                                                            std::size_t begin, std::size_t end,
-                                                            std::size_t padding,
+                                                            std::size_t count, std::size_t padding,
                                                             const std::string& where) {
-    requireMemory(where, double(end - begin + padding) * sizeof(std::uint64_t));
-    UnclearedVector<std::uint64_t> words(end - begin + padding);
+    requireMemory(where, double(count + padding) * sizeof(std::uint64_t));
+    UnclearedVector<std::uint64_t> words(count + padding);
     std::fill(words.end() - std::ptrdiff_t(padding), words.end(), 0);
-    if (begin == end) return words;
     constexpr std::size_t kLeaves = VdbLeaves::kRun;
-    const std::size_t firstLeaf = begin / kLeafWords;
-    const std::size_t lastLeaf = (end - 1) / kLeafWords;
+    const std::size_t leafCount = (count + kLeafWords - 1) / kLeafWords;
     std::atomic<bool> areWhole = true;
-    parallelFor(lastLeaf / kLeaves - firstLeaf / kLeaves + 1, [&](std::size_t part) {
-        const std::size_t firstOfPart = (firstLeaf / kLeaves + part) * kLeaves;
-        const std::size_t endOfPart = std::min(lastLeaf + 1, firstOfPart + kLeaves);
-        LeafWords leafWords(leaves, endOfPart);
-        for (std::size_t leaf = std::max(firstLeaf, firstOfPart); leaf < endOfPart; ++leaf) {
+    parallelFor((leafCount + kLeaves - 1) / kLeaves, [&](std::size_t part) {
+        const std::size_t end = std::min(leafCount, (part + 1) * kLeaves);
+        LeafWords leafWords(leaves, end);
+        for (std::size_t leaf = part * kLeaves; leaf < end; ++leaf) {
             const std::size_t place = leaf * kLeafWords;
-            const std::size_t from = std::max(begin, place);
-            const std::size_t to = std::min(end, place + kLeafWords);
+            const std::size_t size = std::min(kLeafWords, count - place);
             const auto some = leafWords.of(leaf);
-            if (!some || some->size() < to - place) {
+            if (!some || some->size() < size) {
                 areWhole = false;
                 return;
             }
-            std::memcpy(&words[from - begin], &(*some)[from - place],
-                        (to - from) * sizeof words[0]);
+            std::memcpy(&words[place], some->data(), size * sizeof words[0]);
         }
     });
     if (!areWhole) return std::nullopt;

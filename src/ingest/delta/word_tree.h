@@ -27,12 +27,12 @@ std::vector<std::uint64_t> wordsOfTree(const openvdb::Int64Tree& tree, std::size
 
 /// Returns how many words a file's leaves of int64 have; nothing if these are no tree of words.
 std::optional<std::size_t> countWords(const VdbLeaves& leaves);
-/// Returns the words [begin, end) of such leaves, with `padding` zeros behind them. Multi-threaded.
+/// Returns the first `count` words of such leaves, with `padding` zeros behind them.
+/// Multi-threaded.
 /// @return nothing if there is a gap between them
 /// @throw Error(kFailed) if memory does not hold them
 std::optional<UnclearedVector<std::uint64_t>> wordsOfLeaves(const VdbLeaves& leaves,
-                                                            std::size_t begin, std::size_t end,
-                                                            std::size_t padding,
+                                                            std::size_t count, std::size_t padding,
                                                             const std::string& where);
 
 }  // namespace deltasplat

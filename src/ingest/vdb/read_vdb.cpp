@@ -20,7 +20,6 @@
 #include "ingest/readers.h"
 #include "ingest/vdb/default_grid.h"
 #include "ingest/vdb/packed_grid.h"
-#include "ingest/vdb/read_slices.h"
 #include "ingest/vdb/vdb_file.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "ingest/vdb/vector_part.h"
@@ -338,17 +337,6 @@ std::optional<Volume> readPackedVolume(const std::filesystem::path& path,
         if (error.code() != ErrorCode::kInput) throw;
         return std::nullopt;
     }
-}
-
-std::optional<Volume> readVdbSlices(const std::filesystem::path& path, const ReadOptions& options,
-                                    const SlicesWanted& wanted, const Listener& listener) {
-    const VdbFile file(path);
-    const ChosenGrid chosen = chooseGrids(path.string(), file, options.gridName, false).front();
-    if (chosen.part) return std::nullopt;
-    std::optional<Volume> volume =
-        readDeltaBlocks(file, *chosen.grid, whereOf(path, chosen), options, listener, &wanted);
-    if (volume) volume->name = chosen.name();
-    return volume;
 }
 
 void readVdb(const std::filesystem::path& path, const ReadOptions& options, bool all,

@@ -403,7 +403,6 @@ std::optional<VdbFile::Found> VdbFile::find(const VdbGrid& grid, Find how,
     const bool byNotes =
         how != Find::kByWalking && placeBySizes(bytes, head, owner.end, places.leaves, where);
     if (!byNotes) {
-        if (how == Find::kByNotesAlone) return std::nullopt;
         walkLeaves(bytes, head.format, places.leaves);
         requireEnd(bytes, owner);
     }

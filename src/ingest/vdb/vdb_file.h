@@ -92,10 +92,9 @@ class VdbFile {
     /// How to find where leaves lie: by what the file notes of their sizes (OpenVDB's
     /// "file_delayed_load"), or by walking over all of them, which `kByNotes` does where there are
     /// no notes. Notes may be wrong: then leaves look damaged.
-    enum class Find { kByNotes, kByNotesAlone, kByWalking };
+    enum class Find { kByNotes, kByWalking };
     /// Finds the leaves of a grid of int32 or int64 with background 0, unless there are active
     /// tiles beside them. Their values are read when they are unpacked.
-    /// @param how  `kByNotesAlone`: return nothing where the file has no notes
     /// @throw as read()
     std::optional<VdbLeaves> readLeaves(const VdbGrid& grid, Find how) const;
     /// Reads a grid of numbers without making a tree of them.

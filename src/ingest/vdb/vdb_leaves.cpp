@@ -57,28 +57,6 @@ VdbLeaves::VdbLeaves(std::shared_ptr<const FileBytes> file, std::vector<VdbLeaf>
       format_(format),
       transform_(std::move(transform)) {}
 
-std::uint64_t VdbLeaves::bytes() const {
-    std::uint64_t sum = 0;
-    for (const VdbLeaf& leaf : leaves_) sum += leaf.size;
-    return sum;
-}
-
-void VdbLeaves::keep(int first, int last) {
-    std::erase_if(leaves_, [&](const VdbLeaf& leaf) {
-        return leaf.origin[0] > last || leaf.origin[0] + 7 < first;
-    });
-}
-
-void VdbLeaves::hold() {
-    for (std::size_t i = 0; i < leaves_.size();) {
-        const std::uint64_t begin = leaves_[i].begin;
-        std::uint64_t end = begin;
-        for (; i < leaves_.size() && leaves_[i].begin == end; ++i) end = leaves_[i].end();
-        VdbRun run;
-        if (run.read(*file_, begin, end)) held_.push_back(std::move(run));
-    }
-}
-
 // Reads a leaf, and those that are asked for next.
 // @param behind  the first leaf that is not going to be
 bool VdbLeaves::readRun(const VdbLeaf& leaf, VdbRun& run, std::size_t behind) const {
@@ -96,20 +74,8 @@ bool VdbLeaves::readRun(const VdbLeaf& leaf, VdbRun& run, std::size_t behind) co
 
 std::optional<std::span<const char>> VdbLeaves::bytesOf(const VdbLeaf& leaf, VdbRun& room,
                                                         std::size_t behind) const {
-    if (held_.empty()) {
-        if (!room.has(leaf) && !readRun(leaf, room, behind)) return std::nullopt;
-        return room.of(leaf);
-    }
-    const VdbRun* run = &held_.back();
-    if (leaf.begin < run->begin()) {
-        const auto later = std::upper_bound(
-            held_.begin(), held_.end(), leaf.begin,
-            [](std::uint64_t place, const VdbRun& other) { return place < other.begin(); });
-        if (later == held_.begin()) return std::nullopt;
-        run = &*std::prev(later);
-    }
-    if (!run->has(leaf)) return std::nullopt;
-    return run->of(leaf);
+    if (!room.has(leaf) && !readRun(leaf, room, behind)) return std::nullopt;
+    return room.of(leaf);
 }
 
 template <typename Stored>

@@ -39,7 +39,7 @@ class VdbRun {
 };
 
 /// The leaves of a grid as they lie in its file, packed: each is unpacked by whoever wants its
-/// values, on any thread, and no tree is made of them. They may be some of the grid's. What the
+/// values, on any thread, and no tree is made of them. What the
 /// file says of a leaf is checked whenever it is unpacked.
 class VdbLeaves {
   public:
@@ -64,12 +64,6 @@ class VdbLeaves {
 
     const std::vector<VdbLeaf>& leaves() const { return leaves_; }
     const openvdb::math::MapBase& transform() const { return *transform_; }
-    std::uint64_t bytes() const;
-    /// Leaves those out that have no voxels whose x is within [first, last]; leaves() changes.
-    void keep(int first, int last);
-    /// Reads the bytes of all leaves, on all threads, for leaves that are wanted in another order
-    /// than they have. Otherwise some at a time are read, when one of them is wanted.
-    void hold();
     /// Unpacks the values of a leaf's active voxels, in the order of the mask's bits. Thread-safe.
     /// @tparam Stored  of the format's size: a number, or the std::uint16_t that a half is
     /// @param leaf     of leaves()
@@ -106,7 +100,6 @@ class VdbLeaves {
     std::vector<VdbLeaf> leaves_;
     VdbValueFormat format_;
     openvdb::math::MapBase::ConstPtr transform_;
-    std::vector<VdbRun> held_;  // by where they begin
 };
 
 }  // namespace deltasplat

@@ -72,9 +72,7 @@ expect_keys("${text}" "" files)
 expect_keys("${text}" "files;0" "file;emission_grid;color_grid;grids")
 expect_keys("${text}" "files;0;grids;0" "name;type;class;series;description;labels;length_unit;volume;volumes;dims;\
 bbox;voxel_size;active;range;background;background_guess;background_voxels;percentiles;histogram;\
-code_book;code_error;delta;delta_estimate;axes;transfer_function;stamps;world_box;origin;directions;space;target;frame_width")
-expect_keys("${text}" "files;0;grids;0;delta_estimate" "plain_bytes;delta_bytes;voxel_bytes;\
-faster;sampled")
+code_book;code_error;delta;axes;transfer_function;stamps;world_box;origin;directions;space;target;frame_width")
 expect_keys("${text}" "files;0;grids;0;axes" "x;y;z")
 expect_keys("${text}" "files;0;grids;0;stamps" "x;y;z")
 foreach(axis x y z)
