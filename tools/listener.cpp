@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/text.h"
 #include "flag_names.h"
-#include "printable.h"
 #include "process/interrupt.h"
 #include "process/run_log.h"
 #include "process/tell_place.h"

@@ -7,11 +7,11 @@
 #include <system_error>
 #include <tuple>
 
-#include "cannot_write.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
-#include "ingest/files/input_files.h"
-#include "output_target.h"
+#include "files/descriptor.h"
+#include "files/output_target.h"
+#include "ingest/input_files.h"
 #include "process/interrupt.h"
 #include "process/run_log.h"
 

@@ -11,13 +11,13 @@
 #include <new>
 #include <optional>
 
+#include "base/text.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "deltasplat/memory_limit.h"
 #include "deltasplat/simd.h"
 #include "deltasplat/threads.h"
 #include "listener.h"
-#include "printable.h"
 #include "process/interrupt.h"
 #include "process/large_pages.h"
 #include "process/print_out.h"
@@ -25,7 +25,6 @@
 #include "process/run_log.h"
 #include "process/tell_place.h"
 #include "process/terminate.h"
-#include "suggest.h"
 
 namespace deltasplat {
 namespace {

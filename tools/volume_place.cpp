@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "number_text.h"
+#include "base/text.h"
 #include "options/parse.h"
 
 namespace deltasplat {

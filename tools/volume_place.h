@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/affine.h"
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/view/camera.h"
-#include "view/affine.h"
 
 namespace deltasplat {
 

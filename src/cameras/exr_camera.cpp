@@ -9,12 +9,12 @@
 #include <cmath>
 #include <glm/matrix.hpp>
 
+#include "base/text.h"
 #include "cameras/readers.h"
 #include "deltasplat/error.h"
-#include "ingest/files/refuse_file.h"
+#include "files/file_name.h"
 #include "ingest/images/image_file.h"
 #include "modules/image_module.h"
-#include "number_text.h"
 #include "view/camera_axes.h"
 
 namespace deltasplat {

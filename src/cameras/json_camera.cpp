@@ -6,10 +6,10 @@
 #include <string_view>
 #include <utility>
 
+#include "base/text.h"
 #include "cameras/motion.h"
 #include "cameras/readers.h"
 #include "deltasplat/error.h"
-#include "number_text.h"
 #include "optics/located_json.h"
 #include "view/camera_axes.h"
 

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "portable_math.h"
+#include "base/portable_math.h"
 #include "view/camera_axes.h"
 
 namespace deltasplat {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/cameras/read_camera.h"
 
+#include "base/default_floats.h"
+#include "base/text.h"
 #include "cameras/readers.h"
-#include "default_floats.h"
 #include "deltasplat/error.h"
-#include "lower_case.h"
 
 namespace deltasplat {
 

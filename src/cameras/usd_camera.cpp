@@ -5,9 +5,9 @@
 #include <array>
 #include <memory>
 
+#include "base/text.h"
 #include "cameras/readers.h"
 #include "deltasplat/error.h"
-#include "number_text.h"
 #include "usd/usd_scene.h"
 #include "view/camera_axes.h"
 

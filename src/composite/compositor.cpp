@@ -9,8 +9,6 @@
 #include <optional>
 #include <span>
 
-#include "composite/full_rows.h"
-
 namespace deltasplat {
 
 std::size_t Compositor::composite(Sheets sheets, const SheetReading& shift, int firstRow,

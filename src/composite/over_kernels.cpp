@@ -4,7 +4,7 @@
 
 #include <bit>
 
-#include "simd_targets.h"
+#include "base/simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "composite/over_kernels.cpp"

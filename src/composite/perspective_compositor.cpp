@@ -8,7 +8,7 @@
 #include <bit>
 #include <cmath>
 
-#include "composite/full_rows.h"
+#include "composite/compositor.h"
 #include "optics/opacity_steps.h"
 
 namespace deltasplat {

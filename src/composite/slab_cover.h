@@ -9,6 +9,11 @@
 
 namespace deltasplat {
 
+/// Adds the cells in which a layer is opaque everywhere, its opacity 1 to the last bit: whatever is
+/// put behind it there changes no bit, for it is multiplied by 0.
+/// @return whether there are any that were not covered
+bool addCovered(const Layer& layer, CoveredCells& cells);
+
 /// What of the slices of a slab is covered and need not be made: by the slabs before it, and by the
 /// slab's own slices, from the front on. What is covered changes no bit of the picture
 /// (addCovered). To be asked for one slice after the other.

@@ -10,12 +10,12 @@
 #include <string>
 #include <utility>
 
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/text.h"
 #include "composite/compositor.h"
 #include "composite/perspective_compositor.h"
 #include "deltasplat/threads.h"
-#include "memory.h"
-#include "number_text.h"
-#include "parallel.h"
 
 namespace deltasplat {
 

@@ -8,12 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "composite/layer_fold.h"
+#include "base/kept_memory.h"
+#include "base/progress.h"
+#include "composite/layer.h"
 #include "composite/slab_cover.h"
-#include "kept_memory.h"
-#include "shared_progress.h"
 #include "splat/splatter.h"
-#include "stopwatch.h"
 #include "view/base_plane.h"
 
 namespace deltasplat {

@@ -8,24 +8,23 @@
 #include <string>
 #include <utility>
 
+#include "base/affine.h"
+#include "base/default_floats.h"
+#include "base/progress.h"
+#include "base/text.h"
 #include "convert/take_deltas.h"
 #include "convert/volume_grid.h"
-#include "default_floats.h"
 #include "delta/stream_writer.h"
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/error.h"
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/read_delta_grid.h"
 #include "ingest/delta/word_tree.h"
-#include "ingest/grids/file_metadata.h"
 #include "ingest/grids/grid_metadata.h"
-#include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/grids/tree_types.h"
 #include "ingest/vdb/vdb_transform.h"
-#include "listener_part.h"
-#include "number_text.h"
 #include "vdb/write_vdb.h"
-#include "view/affine.h"
 
 namespace deltasplat {
 namespace {

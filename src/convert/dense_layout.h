@@ -1,16 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <string>
 
-#include "convert/write_report.h"
+#include "convert/value_facts.h"
+#include "deltasplat/convert/write_volume.h"
 #include "ingest/raw/raw_format.h"
 
 namespace deltasplat {
+
+/// Collects the notes of a WriteReport.
+class Notes {
+  public:
+    Notes(WriteReport& report, const std::filesystem::path& file)
+        : report_(report), file_(file.string()) {}
+    /// A detail that is there, but otherwise.
+    void remark(const std::string& what) { report_.notes.push_back(file_ + ": " + what); }
+    /// A detail that cannot be read back.
+    void loss(const std::string& what) {
+        remark(what);
+        report_.lossless = false;
+    }
+
+  private:
+    WriteReport& report_;
+    std::string file_;
+};
 
 /// What a file of a dense format holds besides its values.
 struct DenseLayout {
@@ -65,5 +85,11 @@ void settleMetaImage(DenseLayout& layout, const std::string& file, Notes& notes)
 std::string metaImageHeader(const DenseLayout& layout, const std::string& dataFile);
 void settleNifti(DenseLayout& layout, const std::string& file, Notes& notes);
 std::string niftiHeader(const DenseLayout& layout, const std::string& dataFile);
+
+/// Returns the type in which a dense format stores a volume: the type that it had before it was a
+/// .vdb (kSourceTypeKey) or its own if that holds every value, otherwise float32 or, if that does
+/// not hold every value, float64. Says so where the type is another one.
+/// @param wide  whether the format has integers of 64 bits
+RawType denseType(const Volume& volume, const ValueFacts& facts, bool wide, Notes& notes);
 
 }  // namespace deltasplat

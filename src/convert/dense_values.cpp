@@ -10,12 +10,12 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/bits.h"
+#include "ingest/codes/code_math.h"
 #include "ingest/codes/code_tree.h"
-#include "ingest/codes/code_values.h"
-#include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/raw/raw_load.h"
 #include "ingest/values/value_cast.h"
-#include "little_endian.h"
 
 namespace deltasplat {
 namespace {

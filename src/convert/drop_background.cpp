@@ -6,14 +6,14 @@
 #include <memory>
 #include <vector>
 
+#include "base/memory.h"
+#include "ingest/codes/code_math.h"
 #include "ingest/codes/code_tree.h"
-#include "ingest/codes/code_values.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/leaf_bytes.h"
-#include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/grids/tree_types.h"
 #include "ingest/values/value_cast.h"
-#include "memory.h"
 
 namespace deltasplat {
 namespace {

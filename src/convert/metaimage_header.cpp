@@ -4,8 +4,8 @@
 // tells that it is a patient's.
 #include <cmath>
 
+#include "base/text.h"
 #include "convert/dense_layout.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

@@ -8,11 +8,11 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
+#include "base/bits.h"
+#include "base/text.h"
 #include "convert/dense_layout.h"
 #include "deltasplat/error.h"
-#include "dims_text.h"
 #include "ingest/placement.h"
-#include "little_endian.h"
 
 namespace deltasplat {
 namespace {

@@ -2,9 +2,9 @@
 // Based on: Definition of NRRD File Format (teem.sourceforge.net/nrrd/format.html), version 4.
 #include <vector>
 
+#include "base/text.h"
 #include "convert/dense_layout.h"
 #include "deltasplat/ingest/label_list.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "base/text.h"
 #include "convert/dense_layout.h"
 #include "deltasplat/error.h"
-#include "dims_text.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

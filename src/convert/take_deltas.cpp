@@ -8,20 +8,20 @@
 #include <utility>
 #include <vector>
 
-#include "delta/delta_tree.h"
+#include "base/affine.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "delta/delta_grid.h"
 #include "delta/exact_deltas.h"
 #include "delta/hold_values.h"
+#include "ingest/delta/delta_format.h"
 #include "ingest/delta/delta_origin.h"
-#include "ingest/delta/number_list.h"
-#include "ingest/delta/zigzag.h"
+#include "ingest/delta/exact_slots.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/leaf_bytes.h"
-#include "ingest/grids/source_grid.h"
 #include "ingest/grids/tree_from_codes.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/grids/tree_types.h"
-#include "memory.h"
-#include "parallel.h"
-#include "view/affine.h"
 
 namespace deltasplat {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ingest/grids/grid_values.h"
-#include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/raw/raw_load.h"
 
 namespace deltasplat {

@@ -9,20 +9,19 @@
 #include <system_error>
 #include <vector>
 
-#include "box_voxels.h"
-#include "convert/dense_type.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/text.h"
+#include "convert/dense_layout.h"
 #include "convert/dense_values.h"
 #include "convert/packed_output.h"
 #include "convert/value_facts.h"
-#include "count_text.h"
 #include "deltasplat/error.h"
-#include "ingest/files/file_name.h"
+#include "files/file_name.h"
+#include "ingest/box_voxels.h"
 #include "ingest/grids/grid_metadata.h"
-#include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/grids/tree_types.h"
-#include "memory.h"
-#include "number_text.h"
-#include "parallel.h"
 
 namespace deltasplat {
 namespace {

@@ -6,16 +6,14 @@
 #include <optional>
 #include <string>
 
+#include "base/text.h"
+#include "convert/dense_layout.h"
 #include "convert/drop_background.h"
-#include "convert/half_exact.h"
 #include "convert/volume_grid.h"
-#include "convert/write_report.h"
-#include "count_text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/value_statistics.h"
-#include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/grids/tree_types.h"
-#include "number_text.h"
 #include "vdb/write_vdb.h"
 
 namespace deltasplat {

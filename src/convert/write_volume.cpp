@@ -3,14 +3,14 @@
 
 #include <utility>
 
+#include "base/default_floats.h"
+#include "base/text.h"
 #include "convert/dense_layout.h"
 #include "convert/write_dense.h"
 #include "convert/write_grids.h"
-#include "default_floats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
-#include "ingest/files/file_name.h"
-#include "printable.h"
+#include "files/file_name.h"
 
 namespace deltasplat {
 namespace {

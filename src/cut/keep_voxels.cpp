@@ -5,10 +5,10 @@
 
 #include <vector>
 
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/leaf_bytes.h"
-#include "memory.h"
-#include "parallel.h"
 
 namespace deltasplat {
 namespace {

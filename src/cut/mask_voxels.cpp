@@ -8,8 +8,8 @@
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
 
-#include "cut/index_plane.h"
-#include "view/affine.h"
+#include "base/affine.h"
+#include "cut/cut_region.h"
 
 namespace deltasplat {
 namespace {

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "ingest/delta/bit_reader.h"
@@ -43,5 +45,56 @@ class BitWriter {
     std::vector<std::uint64_t> words_;
     int used_ = 64;  // bits of the last word
 };
+
+/// A parameter for some numbers, and how many bits they take with it.
+struct RiceChoice {
+    int parameter = 0;
+    std::uint64_t bits = std::numeric_limits<std::uint64_t>::max();
+};
+
+/// Returns the parameter with which numbers take the fewest bits, the smallest such.
+template <typename Number>
+RiceChoice bestRice(RiceCode code, std::span<const Number> numbers) {
+    Number all = 0;
+    for (const Number number : numbers) all |= number;
+    RiceChoice best;
+    for (int parameter = 0; parameter < code.width; ++parameter) {
+        std::uint64_t bits = 0;
+        for (const Number number : numbers) {
+            const Number quotient = number >> parameter;
+            bits += quotient < RiceCode::kMostOnes ? std::uint64_t(quotient) + 1 + parameter
+                                                   : RiceCode::kMostOnes + code.width;
+        }
+        if (bits < best.bits) best = {parameter, bits};
+        // A larger one gives every number another bit.
+        if ((all >> parameter) == 0) break;
+    }
+    return best;
+}
+
+/// Writes at most 64 numbers for takePlanes.
+template <typename Number>
+void putPlanes(BitWriter& out, RiceCode code, int parameter, std::span<const Number> numbers) {
+    const auto putPlane = [&](const auto& hasBit, const auto& bitOf) {
+        std::uint64_t plane = 0;
+        int bits = 0;
+        for (const Number number : numbers)
+            if (hasBit(number)) plane |= std::uint64_t{bitOf(number)} << bits++;
+        out.put(plane, bits);
+    };
+    const auto quotientOf = [&](Number number) { return std::uint64_t(number) >> parameter; };
+    for (std::uint64_t level = 0; level < RiceCode::kMostOnes; ++level) {
+        putPlane([&](Number number) { return quotientOf(number) >= level; },
+                 [&](Number number) { return quotientOf(number) > level; });
+    }
+    for (int bit = 0; bit < parameter; ++bit) {
+        putPlane([](Number) { return true; },
+                 [&](Number number) { return (number >> bit & 1) != 0; });
+    }
+    for (const Number number : numbers) {
+        if (quotientOf(number) >= RiceCode::kMostOnes)
+            out.put(quotientOf(number), code.width - parameter);
+    }
+}
 
 }  // namespace deltasplat

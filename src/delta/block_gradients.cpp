@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "delta/mix_rows.h"
+#include "delta/mix_window.h"
 #include "ingest/codes/leaf_slices.h"
 
 namespace deltasplat {

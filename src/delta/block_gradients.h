@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "delta/block_finder.h"
+#include "delta/mix_window.h"
 #include "deltasplat/view/factorization.h"
 #include "optics/voxel_painter.h"
 

@@ -6,14 +6,14 @@
 #include <bit>
 #include <cstring>
 
-#include "simd_targets.h"
+#include "base/simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "delta/block_kernels.cpp"
 #include "hwy/foreach_target.h"
 // After foreach_target.h, as Highway asks.
+#include "base/transpose-inl.h"
 #include "hwy/highway.h"
-#include "transpose-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {

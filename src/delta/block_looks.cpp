@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "view/thin_voxels.h"
+#include "view/factorization.h"
 
 namespace deltasplat {
 

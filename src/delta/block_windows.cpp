@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "delta/block_kernels.h"
-#include "parallel.h"
 
 namespace deltasplat {
 

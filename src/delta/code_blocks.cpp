@@ -10,14 +10,15 @@
 #include <optional>
 #include <utility>
 
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/sorting.h"
 #include "deltasplat/threads.h"
 #include "ingest/codes/leaf_slices.h"
-#include "ingest/codes/seen_codes.h"
-#include "memory.h"
-#include "parallel.h"
-#include "parallel_sort.h"
+#include "ingest/codes/slot_blocks.h"
 
 namespace deltasplat {
+
 namespace {
 
 // What the stage keeps for each block: itself, its place and its changes.

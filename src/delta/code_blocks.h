@@ -2,17 +2,27 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <glm/vec3.hpp>
 #include <span>
 #include <tuple>
 #include <vector>
 
 #include "deltasplat/delta/delta_grid.h"
+#include "hwy/cache_control.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/codes/slot_blocks.h"
-#include "view/seen_cone.h"
+#include "view/seen_box.h"
 
 namespace deltasplat {
+
+/// Brings the codes of a leaf nearer that will be read next: leaves lie anywhere, and nobody else
+/// can tell where.
+inline void fetchCodes(const CodeTree::Leaf& leaf) {
+    constexpr std::size_t kLineBytes = 64;
+    const Code* const codes = leaf.buffer().data();
+    for (std::size_t i = 0; i < 512; i += kLineBytes / sizeof(Code)) hwy::Prefetch(codes + i);
+}
 
 /// An 8x8x8 block of active voxels, in (slice, u, v) order: a leaf of the code tree, a piece of a
 /// tile, or one of SlotBlocks.

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "delta/block_kernels.h"
-#include "delta/fetch_codes.h"
-#include "delta/joined_tile_reader.h"
+#include "delta/code_blocks.h"
+#include "delta/joined_tiles.h"
 #include "delta/mixed_sight.h"
 #include "delta/slot_holder.h"
 

@@ -19,7 +19,6 @@
 #include "delta/mix_window.h"
 #include "delta/packed_deltas.h"
 #include "delta/value_mixer.h"
-#include "delta/word_budget.h"
 #include "delta/word_collector.h"
 
 namespace deltasplat {

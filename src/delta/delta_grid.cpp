@@ -3,7 +3,7 @@
 // equations 6 and 9: a slice is the slice before it plus what changed. Here the changes are codes
 // rather than colours, so that one grid serves every transfer function, and they lie in an OpenVDB
 // grid whose x axis is the slice number.
-#include "deltasplat/delta/delta_grid.h"
+#include "delta/delta_grid.h"
 
 #include <algorithm>
 #include <array>
@@ -11,15 +11,16 @@
 #include <memory>
 #include <string>
 
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "delta/block_kernels.h"
 #include "delta/block_windows.h"
-#include "delta/delta_tree.h"
+#include "deltasplat/delta/delta_grid.h"
 #include "deltasplat/error.h"
 #include "ingest/grids/leaf_bytes.h"
-#include "memory.h"
-#include "parallel.h"
 
 namespace deltasplat {
+
 namespace {
 
 using Leaf = DeltaTree::Leaf;

@@ -10,14 +10,14 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/sorting.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/codes/leaf_slices.h"
-#include "ingest/delta/zigzag.h"
+#include "ingest/delta/exact_slots.h"
 #include "ingest/grids/leaf_bytes.h"
 #include "ingest/values/value_cast.h"
-#include "memory.h"
-#include "parallel.h"
-#include "run_begins.h"
 
 namespace deltasplat {
 namespace {

@@ -8,15 +8,15 @@
 #include <utility>
 #include <vector>
 
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/sorting.h"
 #include "delta/block_windows.h"
 #include "delta/code_blocks.h"
 #include "delta/hold_slots.h"
-#include "ingest/codes/code_statistics.h"
+#include "ingest/codes/code_counts.h"
 #include "ingest/codes/leaf_slices.h"
 #include "ingest/readers.h"
-#include "memory.h"
-#include "parallel.h"
-#include "run_begins.h"
 
 namespace deltasplat {
 namespace {

@@ -8,7 +8,6 @@
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/tree_types.h"
 #include "ingest/values/distinct_values.h"
-#include "ingest/values/same_bits.h"
 #include "ingest/values/value_cast.h"
 
 namespace deltasplat {

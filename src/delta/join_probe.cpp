@@ -9,12 +9,12 @@
 #include <random>
 #include <utility>
 
+#include "base/bits.h"
+#include "base/parallel.h"
+#include "base/sorting.h"
 #include "delta/class_index.h"
 #include "delta/class_reader.h"
-#include "floor_div.h"
 #include "ingest/codes/leaf_slices.h"
-#include "parallel.h"
-#include "run_begins.h"
 
 namespace deltasplat {
 namespace {

@@ -9,10 +9,10 @@
 #include <limits>
 #include <utility>
 
+#include "base/portable_math.h"
+#include "base/simd_targets.h"
 #include "delta/joined_rows.h"
 #include "deltasplat/view/factorization.h"
-#include "portable_math.h"
-#include "simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "delta/look_joiner.cpp"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ingest/values/hash_place.h"
+#include "ingest/values/distinct_values.h"
 
 namespace deltasplat {
 

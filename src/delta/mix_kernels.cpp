@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "simd_targets.h"
+#include "base/simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "delta/mix_kernels.cpp"

@@ -7,8 +7,8 @@
 #include <optional>
 #include <tuple>
 
-#include "delta/block_finder.h"
-#include "memory.h"
+#include "base/memory.h"
+#include "delta/mix_window.h"
 
 namespace deltasplat {
 namespace {

@@ -13,16 +13,16 @@
 #include <tuple>
 #include <utility>
 
+#include "base/bits.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/sorting.h"
 #include "delta/column_packer.h"
 #include "delta/joined_tiles.h"
 #include "delta/mixed_sight.h"
 #include "delta/slice_joiner.h"
 #include "delta/slot_holder.h"
 #include "deltasplat/error.h"
-#include "floor_div.h"
-#include "memory.h"
-#include "parallel.h"
-#include "run_begins.h"
 
 namespace deltasplat {
 namespace {

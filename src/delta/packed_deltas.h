@@ -10,12 +10,12 @@
 #include <span>
 #include <vector>
 
+#include "base/uncleared.h"
 #include "delta/class_index.h"
 #include "delta/slab_plan.h"
 #include "deltasplat/view/factorization.h"
 #include "optics/voxel_painter.h"
-#include "uncleared_vector.h"
-#include "view/seen_cone.h"
+#include "view/seen_box.h"
 
 namespace deltasplat {
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/simd_targets.h"
 #include "delta/joined_rows.h"
-#include "simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "delta/slice_joiner.cpp"

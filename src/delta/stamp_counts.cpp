@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/delta/stamp_counts.h"
 
-#include "box_voxels.h"
 #include "delta/block_windows.h"
 #include "delta/slab_plan.h"
+#include "ingest/box_voxels.h"
 
 namespace deltasplat {
 

@@ -10,7 +10,7 @@
 #include <optional>
 #include <utility>
 
-#include "delta/mix_rows.h"
+#include "delta/mix_window.h"
 
 namespace deltasplat {
 namespace {

@@ -6,9 +6,10 @@
 #include <numeric>
 #include <utility>
 
-#include "parallel.h"
+#include "base/parallel.h"
 
 namespace deltasplat {
+
 namespace {
 
 // Of 64 voxels.

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "parallel.h"
+#include "base/parallel.h"
 
 namespace deltasplat {
 namespace {

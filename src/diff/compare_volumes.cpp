@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/diff/compare_volumes.h"
+#include "ingest/placement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,12 +12,12 @@
 #include <limits>
 #include <vector>
 
-#include "default_floats.h"
+#include "base/affine.h"
+#include "base/default_floats.h"
 #include "diff/compare_trees.h"
 #include "diff/error_sums.h"
 #include "diff/voxel_source.h"
-#include "length_unit.h"
-#include "view/affine.h"
+#include "ingest/length_unit.h"
 
 namespace deltasplat {
 namespace {

@@ -12,11 +12,11 @@
 #include <utility>
 
 #include "deltasplat/error.h"
+#include "ingest/codes/code_math.h"
 #include "ingest/codes/code_tree.h"
-#include "ingest/codes/code_values.h"
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_values.h"
-#include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/grids/tree_types.h"
 #include "ingest/vdb/packed_grid.h"
 

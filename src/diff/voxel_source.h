@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "base/text.h"
 #include "deltasplat/ingest/volume.h"
-#include "number_text.h"
 
 namespace deltasplat {
 

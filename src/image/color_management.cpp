@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "default_floats.h"
-#include "image/linear_rec709.h"
-#include "lower_case.h"
+#include "base/default_floats.h"
+#include "base/text.h"
+#include "image/srgb.h"
 #include "modules/image_module.h"
 
 namespace deltasplat {

@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "image/color_processor.h"
+
 #include <OpenImageIO/color.h>
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <functional>
 #include <mutex>
@@ -12,18 +19,43 @@
 #include <string_view>
 #include <vector>
 
+#include "base/in_child.h"
+#include "base/parallel.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
-#include "image/linear_rec709.h"
-#include "image/memory_file.h"
-#include "ingest/guards/in_child.h"
-#include "lower_case.h"
+#include "image/srgb.h"
 #include "modules/image_module.h"
-#include "parallel.h"
-#include "printable.h"
-#include "srgb.h"
 
 namespace deltasplat {
+
+namespace {
+
+[[noreturn]] void fail() {
+    throw Error(ErrorCode::kFailed, std::string("a file in memory: ") + std::strerror(errno));
+}
+
+}  // namespace
+
+MemoryFile::MemoryFile() : file_(::memfd_create("deltasplat", MFD_CLOEXEC)) {
+    if (!file_) fail();
+}
+
+std::string MemoryFile::bytes() const {
+    struct stat status {};
+    if (::fstat(file_.get(), &status) != 0) fail();
+    std::string bytes(std::size_t(status.st_size), '\0');
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+        const ssize_t count =
+            ::pread(file_.get(), bytes.data() + done, bytes.size() - done, off_t(done));
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) fail();
+        done += std::size_t(count);
+    }
+    return bytes;
+}
+
 namespace {
 
 constexpr const char* kNoConfig =

@@ -14,10 +14,11 @@
 #include <string>
 #include <utility>
 
-#include "memory.h"
-#include "parallel.h"
+#include "base/memory.h"
+#include "base/parallel.h"
 
 namespace deltasplat {
+
 namespace {
 
 // Columns so far apart that a run of their own each takes less memory.

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/portable_math.h"
 #include "deltasplat/render_aovs.h"
-#include "memory.h"
-#include "parallel.h"
-#include "portable_math.h"
 
 namespace deltasplat {
 // Depths of a parallel picture begin at its camera, which may be anywhere.

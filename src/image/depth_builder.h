@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "deltasplat/view/camera.h"
-#include "image/deep_stages.h"
+#include "image/deep_builder.h"
 
 namespace deltasplat {
 

@@ -2,13 +2,11 @@
 #include <limits>
 #include <string>
 
-#include "count_text.h"
-#include "default_floats.h"
-#include "ingest/files/file_name.h"
-#include "ingest/files/refuse_file.h"
+#include "base/default_floats.h"
+#include "base/memory.h"
+#include "base/text.h"
+#include "files/file_name.h"
 #include "ingest/images/image_file.h"
-#include "lower_case.h"
-#include "memory.h"
 #include "modules/image_module.h"
 
 namespace deltasplat {

@@ -12,12 +12,12 @@
 #include <type_traits>
 #include <vector>
 
-#include "image/exr_files.h"
+#include "base/parallel.h"
+#include "image/encode_exr.h"
 #include "image/exr_header.h"
 #include "image/exr_stream.h"
 #include "image/seen_box.h"
 #include "image/stored_samples.h"
-#include "parallel.h"
 
 namespace deltasplat {
 namespace {

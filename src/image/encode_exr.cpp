@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "image/encode_exr.h"
+
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
@@ -6,17 +8,20 @@
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "image/exr_files.h"
+#include "deltasplat/atomic_file.h"
+#include "files/descriptor.h"
 #include "image/exr_header.h"
 #include "image/exr_pixels.h"
 #include "image/exr_stream.h"
 #include "image/seen_box.h"
 
 namespace deltasplat {
+
 namespace {
 
 // Channels that lie in a part of their own, if there are several.
@@ -94,6 +99,61 @@ std::string encodeExr(const std::filesystem::path& file, const Image& image,
         parts.size() == 1 ? writeOnePart(parts[0], rows, memory) : writeParts(parts, rows, memory);
     });
     return memory.takeBytes();
+}
+
+namespace {
+
+class RowsFile : public ExrRowsFile {
+  public:
+    RowsFile(const std::filesystem::path& path, glm::ivec2 sizePixels, const PixelBox& box,
+             const ImageFileOptions& options)
+        : file_(path), asFloat_(options.floatExr), stream_(path, file_.descriptor()) {
+        if (file_.isDevice()) {
+            throw Error(ErrorCode::kOutput,
+                        gotExpected(path.string(), "a device", "a file, for a picture in parts"));
+        }
+        writeExr(path, [&] {
+            Imf::Header header = exrHeader(options, sizePixels, box, "zip");
+            addRgba(asFloat_, header);
+            next_ = header.dataWindow().min;
+            output_.emplace(stream_, header);
+        });
+    }
+
+    void write(const Image& rows) override {
+        const ExrRgba pixels(rows, {{0, 0}, rows.size}, asFloat_);
+        writeExr(file_.finalPath(), [&] {
+            output_->setFrameBuffer(pixels.at(next_));
+            output_->writePixels(rows.size.y);
+        });
+        check();
+        next_.y += rows.size.y;
+    }
+
+    void finish() override {
+        // Ends the file.
+        output_.reset();
+        check();
+        file_.commit();
+    }
+
+  private:
+    void check() const {
+        if (stream_.problem() != 0) throwCannotWrite(file_.finalPath(), stream_.problem());
+    }
+
+    AtomicFile file_;
+    bool asFloat_;
+    ExrFileStream stream_;
+    std::optional<Imf::OutputFile> output_;
+    Imath::V2i next_{0, 0};  // of the pixels to come, the first
+};
+
+}  // namespace
+
+std::unique_ptr<ExrRowsFile> openExrRows(const std::filesystem::path& file, glm::ivec2 sizePixels,
+                                         const PixelBox& box, const ImageFileOptions& options) {
+    return std::make_unique<RowsFile>(file, sizePixels, box, options);
 }
 
 }  // namespace deltasplat

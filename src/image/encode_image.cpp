@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {

@@ -8,10 +8,10 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "base/bits.h"
+#include "base/text.h"
+#include "ingest/length_unit.h"
 #include "ingest/placement.h"
-#include "length_unit.h"
-#include "little_endian.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

@@ -15,9 +15,9 @@
 #include <limits>
 #include <memory>
 
+#include "base/parallel.h"
+#include "base/uncleared.h"
 #include "deltasplat/error.h"
-#include "parallel.h"
-#include "uncleared_vector.h"
 
 namespace deltasplat {
 namespace {

@@ -9,10 +9,10 @@
 #include <new>
 #include <string>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/image/pixel_box.h"
 #include "deltasplat/image/write_image.h"
-#include "printable.h"
 
 namespace deltasplat {
 

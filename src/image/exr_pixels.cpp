@@ -8,8 +8,8 @@
 #include <cstring>
 #include <limits>
 
+#include "base/parallel.h"
 #include "image/quantize.h"
-#include "parallel.h"
 
 namespace deltasplat {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "default_floats.h"
+#include "base/default_floats.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "dims_text.h"
-#include "image/exr_files.h"
+#include "image/encode_exr.h"
 
 namespace deltasplat {
 

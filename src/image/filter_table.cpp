@@ -7,7 +7,7 @@
 #include <bit>
 #include <cmath>
 
-#include "portable_math.h"
+#include "base/portable_math.h"
 
 namespace deltasplat {
 namespace {

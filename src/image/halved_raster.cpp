@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "floor_div.h"
+#include "base/bits.h"
+#include "base/parallel.h"
 #include "image/halving_kernels.h"
-#include "parallel.h"
 
 namespace deltasplat {
 namespace {

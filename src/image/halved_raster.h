@@ -5,8 +5,8 @@
 #include <memory_resource>
 #include <vector>
 
+#include "base/uncleared.h"
 #include "image/warp.h"
-#include "uncleared_array.h"
 
 namespace deltasplat {
 

@@ -2,7 +2,7 @@
 // Sums run in one order whatever a vector's width, so that every SIMD level gives the same bits.
 #include "image/halving_kernels.h"
 
-#include "simd_targets.h"
+#include "base/simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "image/halving_kernels.cpp"

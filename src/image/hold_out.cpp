@@ -6,11 +6,11 @@
 #include <cmath>
 #include <glm/vec4.hpp>
 
-#include "default_floats.h"
+#include "base/default_floats.h"
+#include "base/parallel.h"
+#include "base/portable_math.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "dims_text.h"
-#include "parallel.h"
-#include "portable_math.h"
 
 namespace deltasplat {
 namespace {

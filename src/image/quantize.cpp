@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "parallel.h"
-#include "srgb.h"
+#include "base/parallel.h"
+#include "image/srgb.h"
 
 namespace deltasplat {
 namespace {

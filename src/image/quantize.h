@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "base/uncleared.h"
 #include "deltasplat/image/image.h"
-#include "uncleared_vector.h"
 
 namespace deltasplat {
 

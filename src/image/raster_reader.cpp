@@ -7,7 +7,7 @@
 #include <glm/common.hpp>
 #include <limits>
 
-#include "parallel.h"
+#include "base/parallel.h"
 
 namespace deltasplat {
 namespace {

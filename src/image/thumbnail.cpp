@@ -1,24 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/thumbnail.h"
 
+#include <OpenImageIO/deepdata.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <exception>
 #include <vector>
 
-#include "default_floats.h"
+#include "base/default_floats.h"
+#include "base/silent_stderr.h"
 #include "deltasplat/error.h"
-#include "exr_threads.h"
 #include "image/encode_image.h"
+#include "image/exr_threads.h"
 #include "image/quantize.h"
+#include "image/srgb.h"
 #include "ingest/images/image_claims.h"
+#include "ingest/images/image_file.h"
 #include "modules/image_module.h"
-#include "srgb.h"
 
 namespace deltasplat {
+
 namespace {
 
 constexpr const char* kCompression = "jpeg:85";
@@ -136,6 +141,37 @@ std::string image_module::encodeThumbnail(const Image& image) {
     return encodeInMemory("thumbnail.jpg", "jpeg", spec, [&](OIIO::ImageOutput& output) {
         return output.write_image(OIIO::TypeUInt8, samples.data());
     });
+}
+
+namespace {
+
+bool isReadable(const std::filesystem::path& file, OIIO::ImageInput& input) {
+    const OIIO::ImageSpec spec = input.spec();
+    if (spec.deep) {
+        OIIO::DeepData pixels;
+        return input.read_native_deep_image(0, 0, pixels);
+    }
+    requireSane(file, spec);
+    std::vector<char> pixels(spec.image_bytes(true));
+    return input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeUnknown, pixels.data());
+}
+
+}  // namespace
+
+bool image_module::isWholeImage(const std::filesystem::path& file) {
+    bool isWhole = false;
+    const SilentStderr silent;
+    try {
+        limitExrThreads(requireClaims(file));
+        const auto input = OIIO::ImageInput::open(file.string());
+        isWhole = input && isReadable(file, *input) && !input->has_error();
+        if (input) (void)input->geterror();
+    } catch (const std::exception&) {
+        isWhole = false;
+    }
+    // What is not asked for is printed when the thread ends.
+    (void)OIIO::geterror();
+    return isWhole;
 }
 
 }  // namespace deltasplat

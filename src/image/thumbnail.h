@@ -18,4 +18,8 @@ Image readThumbnail(const std::filesystem::path& file, int mostSide);
 /// @throw Error(kOutput) if it cannot be encoded
 std::string encodeThumbnail(const Image& image);
 
+/// Whether a file is an image of which all pixels can be read: not cut short by a copy that broke
+/// off, and not another kind of file.
+bool isWholeImage(const std::filesystem::path& file);
+
 }  // namespace deltasplat

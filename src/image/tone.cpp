@@ -12,12 +12,12 @@
 #include <limits>
 #include <numbers>
 
-#include "default_floats.h"
+#include "base/default_floats.h"
+#include "base/parallel.h"
+#include "base/portable_math.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "image/quantize.h"
-#include "number_text.h"
-#include "parallel.h"
-#include "portable_math.h"
 
 namespace deltasplat {
 namespace {

@@ -10,12 +10,12 @@
 #include <optional>
 #include <vector>
 
+#include "base/parallel.h"
+#include "base/portable_math.h"
 #include "image/clear_image.h"
 #include "image/halved_raster.h"
 #include "image/raster_reader.h"
 #include "image/warp_kernels.h"
-#include "parallel.h"
-#include "portable_math.h"
 
 namespace deltasplat {
 namespace {

@@ -20,10 +20,10 @@
 #include <optional>
 #include <span>
 
+#include "base/parallel.h"
+#include "base/portable_math.h"
 #include "deltasplat/delta/delta_grid.h"
 #include "image/raster_reader.h"
-#include "parallel.h"
-#include "portable_math.h"
 #include "view/picture_rays.h"
 
 namespace deltasplat {

@@ -7,15 +7,15 @@
 #include <type_traits>
 #include <vector>
 
-#include "default_floats.h"
+#include "base/default_floats.h"
+#include "base/memory.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "ingest/dense/dense_source.h"
+#include "ingest/length_unit.h"
 #include "ingest/placement.h"
 #include "ingest/readers.h"
 #include "ingest/values/value_cast.h"
-#include "length_unit.h"
-#include "memory.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

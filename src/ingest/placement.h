@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <string>
+
+#include "deltasplat/ingest/volume.h"
 
 namespace deltasplat {
 
@@ -27,5 +30,11 @@ void scaleLengths(glm::dmat4& worldFromIndex, double factor);
 /// @param what  "an sform", "spacing and directions"
 /// @throw Error(kInput) "<where>: got <what> that give no place to voxels; expected ..."
 void requirePlacement(const std::string& where, const std::string& what, const glm::dmat4& matrix);
+
+/// Returns the world length of a voxel's shortest side.
+inline double smallestSize(const Volume& volume) {
+    const glm::dvec3 size = volume.voxelSize();
+    return std::min({size.x, size.y, size.z});
+}
 
 }  // namespace deltasplat

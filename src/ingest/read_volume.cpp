@@ -7,19 +7,18 @@
 #include <limits>
 #include <utility>
 
-#include "default_floats.h"
+#include "base/default_floats.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/value_statistics.h"
-#include "ingest/dense/dense_unsigned.h"
-#include "ingest/dense/open_dense.h"
-#include "ingest/dicom/dicom_series.h"
-#include "ingest/files/input_files.h"
-#include "ingest/files/input_kind.h"
-#include "ingest/nifti/nifti_header.h"
+#include "ingest/dense/dense_source.h"
+#include "ingest/dicom/dicom_sniff.h"
+#include "ingest/input_files.h"
+#include "ingest/input_kind.h"
+#include "ingest/nifti/read_nifti.h"
 #include "ingest/raw/read_npy.h"
 #include "ingest/read_compared.h"
 #include "ingest/readers.h"
-#include "number_text.h"
 
 namespace deltasplat {
 

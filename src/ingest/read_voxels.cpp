@@ -3,12 +3,12 @@
 
 #include <string>
 
+#include "base/parallel.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/make_volume.h"
 #include "ingest/codes/code_tree.h"
-#include "ingest/grids/source_grid.h"
-#include "number_text.h"
-#include "parallel.h"
+#include "ingest/grids/tree_grid.h"
 
 namespace deltasplat {
 namespace {

@@ -15,13 +15,13 @@
 #include <queue>
 #include <string>
 
-#include "default_floats.h"
+#include "base/default_floats.h"
+#include "base/parallel.h"
+#include "base/portable_math.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/environment.h"
-#include "luminance.h"
-#include "number_text.h"
-#include "parallel.h"
-#include "portable_math.h"
+#include "image/srgb.h"
 #include "view/picture_rays.h"
 
 namespace deltasplat {

@@ -11,15 +11,16 @@
 #include <utility>
 #include <variant>
 
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "deltasplat/threads.h"
 #include "deltasplat/view/factorization.h"
 #include "light/light_sweep.h"
 #include "light/point_sweep.h"
-#include "memory.h"
 #include "optics/voxel_units.h"
-#include "parallel.h"
 
 namespace deltasplat {
+
 namespace {
 
 // What is to be done for several lights, in pieces for threads.

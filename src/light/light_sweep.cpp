@@ -11,8 +11,8 @@
 #include <glm/matrix.hpp>
 #include <vector>
 
+#include "base/affine.h"
 #include "ingest/codes/leaf_slices.h"
-#include "unit_vector.h"
 
 namespace deltasplat {
 namespace {

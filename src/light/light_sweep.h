@@ -7,8 +7,8 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "light/light_depths.h"
 #include "light/lit_blocks.h"
-#include "light/plane_parts.h"
 #include "light/sweep_kernels.h"
 
 namespace deltasplat {

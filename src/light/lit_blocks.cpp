@@ -9,9 +9,9 @@
 #include <memory_resource>
 #include <utility>
 
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "ingest/codes/leaf_slices.h"
-#include "memory.h"
-#include "parallel.h"
 
 namespace deltasplat {
 

@@ -10,9 +10,9 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/uncleared.h"
 #include "delta/code_blocks.h"
 #include "deltasplat/optics/class_table.h"
-#include "uncleared_array.h"
 
 namespace deltasplat {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "ingest/codes/leaf_slices.h"
-#include "light/plane_parts.h"
+#include "light/light_depths.h"
 #include "light/point_kernels.h"
 
 namespace deltasplat {

@@ -7,16 +7,15 @@
 #include <cmath>
 #include <string>
 
-#include "default_floats.h"
+#include "base/default_floats.h"
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/environment.h"
-#include "ingest/files/file_name.h"
-#include "ingest/files/refuse_file.h"
+#include "files/file_name.h"
+#include "image/srgb.h"
 #include "ingest/images/image_file.h"
-#include "memory.h"
 #include "modules/image_module.h"
-#include "parallel.h"
-#include "srgb.h"
 
 namespace deltasplat {
 namespace {

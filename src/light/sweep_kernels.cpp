@@ -3,7 +3,7 @@
 // reckoned by itself, in one order, so that every level gives the same bits.
 #include "light/sweep_kernels.h"
 
-#include "simd_targets.h"
+#include "base/simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "light/sweep_kernels.cpp"

@@ -19,14 +19,13 @@
 #include <string>
 #include <utility>
 
-#include "default_floats.h"
+#include "base/default_floats.h"
+#include "base/parallel.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "luminance.h"
-#include "medium/longest_way.h"
+#include "image/srgb.h"
 #include "medium/part_looks.h"
 #include "medium/part_sampler.h"
-#include "number_text.h"
-#include "parallel.h"
 
 namespace deltasplat {
 namespace {

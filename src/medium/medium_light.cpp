@@ -9,8 +9,8 @@
 #include <glm/common.hpp>
 #include <utility>
 
-#include "optics/color_factor.h"
-#include "portable_math.h"
+#include "base/portable_math.h"
+#include "optics/color_space.h"
 
 namespace deltasplat {
 namespace {

@@ -8,14 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "medium/longest_way.h"
 #include "medium/medium_light.h"
 #include "medium/part_looks.h"
 #include "medium/part_sampler.h"
-#include "medium/room.h"
-#include "optics/class_light.h"
-#include "optics/color_factor.h"
-#include "optics/painters.h"
+#include "optics/color_space.h"
+#include "optics/voxel_painter.h"
 
 namespace deltasplat {
 namespace {

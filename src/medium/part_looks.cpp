@@ -3,14 +3,27 @@
 
 #include <algorithm>
 #include <glm/common.hpp>
+#include <memory>
 
+#include "base/affine.h"
 #include "deltasplat/ingest/slot.h"
 #include "deltasplat/optics/class_table.h"
+#include "ingest/codes/code_tree.h"
 #include "optics/blackbody.h"
+#include "optics/class_numbers.h"
 #include "optics/color_curve.h"
-#include "optics/function_place.h"
 
 namespace deltasplat {
+
+Volume withRoom(const Volume& volume, const BlockSet& more) {
+    Volume wide = volume;
+    if (more.positions.empty()) return wide;
+    if (!wide.codes) wide.codes = std::make_shared<const CodeTree>();
+    if (volume.empty()) wide.activeCount = 1;
+    wide.box = volume.empty() ? more.box : boxOfBoth(volume.box, more.box);
+    return wide;
+}
+
 namespace {
 
 constexpr std::size_t kMostLooks = 65536;

@@ -2,12 +2,35 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "base/affine.h"
+#include "deltasplat/ingest/volume.h"
+#include "deltasplat/optics/class_table.h"
 #include "deltasplat/optics/medium.h"
+#include "optics/class_numbers.h"
+#include "optics/voxel_painter.h"
 
 namespace deltasplat {
+
+/// Returns the unit distances of the way from one corner to the other of all that there is of a
+/// medium.
+inline double longestWay(const Volume& volume, const Optics& optics) {
+    WorldBox world = worldBox(volume.box, volume.worldFromIndex);
+    for (const MediumPart& part : optics.parts) {
+        const WorldBox other = worldBox(part.volume->box, part.volume->worldFromIndex);
+        world.min = glm::min(world.min, other.min);
+        world.max = glm::max(world.max, other.max);
+    }
+    return glm::length(world.max - world.min) / unitDistanceOf(volume, optics);
+}
+
+/// Returns a volume with room for what is seen besides. What is seen where nothing else is makes it
+/// one that is not empty.
+Volume withRoom(const Volume& volume, const BlockSet& more);
 
 /// Black bodies that are hotter are taken for this hot.
 inline constexpr double kHottestKelvin = 1e5;

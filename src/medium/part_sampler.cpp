@@ -10,11 +10,11 @@
 #include <glm/vector_relational.hpp>
 #include <limits>
 
+#include "base/affine.h"
+#include "base/memory.h"
 #include "delta/code_blocks.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/codes/leaf_slices.h"
-#include "memory.h"
-#include "view/affine.h"
 
 namespace deltasplat {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ingest/dicom/dicom_series.h"
+#include "ingest/dicom/dicom_sniff.h"
 #include "ingest/readers.h"
 
 namespace deltasplat {

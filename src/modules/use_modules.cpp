@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "image/thumbnail.h"
-#include "image/whole_image.h"
 #include "modules/image_module.h"
 #include "modules/medical_module.h"
 

@@ -9,7 +9,7 @@
 #include <glm/mat3x3.hpp>
 #include <numbers>
 
-#include "luminance.h"
+#include "image/srgb.h"
 
 namespace deltasplat {
 namespace {

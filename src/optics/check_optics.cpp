@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

@@ -7,6 +7,7 @@
 #include <vector>
 
 namespace deltasplat {
+
 namespace {
 
 // Returns what each class is called by the others, or nothing if they are not one to one.

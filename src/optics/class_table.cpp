@@ -3,6 +3,7 @@
 // along a ray), with the opacity correction for the distance between slices of P. Lacroute, Fast
 // Volume Rendering Using a Shear-Warp Factorization, 1995.
 #include "deltasplat/optics/class_table.h"
+#include "ingest/placement.h"
 
 #include <algorithm>
 #include <array>
@@ -16,20 +17,17 @@
 #include <tuple>
 #include <utility>
 
-#include "default_floats.h"
+#include "base/affine.h"
+#include "base/default_floats.h"
+#include "base/parallel.h"
+#include "base/portable_math.h"
+#include "base/text.h"
+#include "base/uncleared.h"
 #include "deltasplat/error.h"
-#include "number_text.h"
 #include "optics/check_optics.h"
 #include "optics/class_numbers.h"
 #include "optics/color_curve.h"
 #include "optics/color_digits.h"
-#include "optics/function_place.h"
-#include "optics/largest_alpha.h"
-#include "optics/unit_distance.h"
-#include "parallel.h"
-#include "portable_math.h"
-#include "uncleared_vector.h"
-#include "view/affine.h"
 
 namespace deltasplat {
 namespace {

@@ -8,10 +8,10 @@
 #include <numbers>
 #include <utility>
 
+#include "base/portable_math.h"
+#include "image/srgb.h"
 #include "optics/color_space.h"
-#include "optics/way_between.h"
-#include "portable_math.h"
-#include "srgb.h"
+#include "optics/transfer_function.h"
 
 namespace deltasplat {
 namespace {

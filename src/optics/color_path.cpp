@@ -8,9 +8,9 @@
 #include <set>
 #include <utility>
 
+#include "base/portable_math.h"
+#include "image/srgb.h"
 #include "optics/color_space.h"
-#include "portable_math.h"
-#include "srgb.h"
 
 namespace deltasplat {
 namespace {

@@ -3,8 +3,8 @@
 // level gives the same bits.
 #include "optics/digit_kernels.h"
 
+#include "base/simd_targets.h"
 #include "optics/color_digits.h"
-#include "simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "optics/digit_kernels.cpp"

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <utility>
 
-#include "optics/class_light.h"
-#include "optics/painters.h"
+#include "base/affine.h"
+#include "ingest/placement.h"
 #include "optics/reflected_light.h"
 #include "optics/scaled_values.h"
-#include "view/affine.h"
+#include "optics/voxel_painter.h"
 
 namespace deltasplat {
 namespace {

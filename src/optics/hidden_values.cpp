@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "deltasplat/ingest/value_statistics.h"
-#include "optics/type_range.h"
+#include "optics/transfer_function.h"
 
 namespace deltasplat {
 

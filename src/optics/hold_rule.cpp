@@ -6,11 +6,11 @@
 #include <limits>
 #include <vector>
 
+#include "base/portable_math.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "number_text.h"
 #include "optics/color_digits.h"
-#include "optics/own_colors.h"
-#include "portable_math.h"
+#include "optics/voxel_painter.h"
 
 namespace deltasplat {
 namespace {

@@ -8,6 +8,11 @@
 
 namespace deltasplat {
 
+/// Reads a whole text file, without the byte order mark of UTF-8 that it may begin with.
+/// @param expected  what the file should be, for messages
+/// @throw Error(kInput) if it is no file that can be read, or longer than 16 MiB
+std::string readSmallText(const std::filesystem::path& file, const std::string& expected);
+
 struct LocatedMember;
 
 /// A JSON value that knows its line, so that an error about its meaning can say where it stands.

@@ -5,8 +5,6 @@
 #include <glm/mat4x4.hpp>
 #include <limits>
 
-#include "optics/own_colors.h"
-#include "optics/painters.h"
 #include "optics/voxel_painter.h"
 
 namespace deltasplat {

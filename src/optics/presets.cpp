@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "default_floats.h"
+#include "base/default_floats.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/default_ramp.h"
 #include "optics/color_maps.h"

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "deltasplat/error.h"
-#include "optics/small_text.h"
+#include "optics/located_json.h"
 
 namespace deltasplat {
 namespace {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "default_floats.h"
+#include "base/default_floats.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/transfer_function.h"
 #include "deltasplat/optics/transfer_function_names.h"
-#include "number_text.h"
 #include "optics/color_path.h"
 #include "optics/located_json.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optics/reflected_light.h"
-#include "unit_vector.h"
-#include "view/affine.h"
+#include "base/affine.h"
+#include "ingest/placement.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 // one order of additions, so that every level gives the same bits.
 #include "optics/reflection_kernels.h"
 
-#include "simd_targets.h"
+#include "base/simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "optics/reflection_kernels.cpp"

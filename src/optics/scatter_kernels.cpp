@@ -5,9 +5,9 @@
 // additions, so that every level gives the same bits.
 #include "optics/scatter_kernels.h"
 
+#include "base/portable_math.h"
+#include "base/simd_targets.h"
 #include "light/sweep_kernels.h"
-#include "portable_math.h"
-#include "simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "optics/scatter_kernels.cpp"

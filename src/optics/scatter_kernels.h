@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "deltasplat/optics/scattering.h"
-#include "optics/color_factor.h"
+#include "optics/color_space.h"
 #include "optics/voxel_units.h"
 #include "optics/ways_to_eye.h"
 

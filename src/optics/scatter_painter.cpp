@@ -8,15 +8,15 @@
 #include <memory>
 #include <optional>
 
-#include "floor_div.h"
+#include "base/affine.h"
+#include "base/bits.h"
+#include "base/portable_math.h"
 #include "ingest/codes/leaf_slices.h"
+#include "ingest/placement.h"
 #include "light/light_depths.h"
-#include "optics/color_factor.h"
-#include "optics/painters.h"
+#include "optics/color_space.h"
 #include "optics/scatter_kernels.h"
-#include "portable_math.h"
-#include "unit_vector.h"
-#include "view/affine.h"
+#include "optics/voxel_painter.h"
 
 namespace deltasplat {
 namespace {

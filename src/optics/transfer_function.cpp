@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: VTK's documentation and behaviour of vtkPiecewiseFunction (midpoint and sharpness of an
 // opacity point).
-#include "deltasplat/optics/transfer_function.h"
+#include "optics/transfer_function.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,16 +9,16 @@
 #include <limits>
 #include <numeric>
 
-#include "default_floats.h"
+#include "base/default_floats.h"
+#include "base/portable_math.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "deltasplat/optics/default_ramp.h"
-#include "ingest/codes/code_statistics.h"
+#include "deltasplat/optics/transfer_function.h"
+#include "ingest/codes/code_counts.h"
 #include "optics/color_curve.h"
-#include "optics/type_range.h"
-#include "optics/way_between.h"
-#include "portable_math.h"
 
 namespace deltasplat {
+
 namespace {
 
 // Finds the points around x: `right` is the first point beyond x, so that of several points at the

@@ -7,7 +7,6 @@
 
 #include "optics/check_optics.h"
 #include "optics/opacity_steps.h"
-#include "optics/painters.h"
 
 namespace deltasplat {
 
@@ -47,6 +46,16 @@ std::unique_ptr<const VoxelPainter> makePainter(const Volume& volume, const Opti
     }
     if (optics.gradientOpacity.empty()) return painter;
     return makeFadingPainter(volume, optics.gradientOpacity, std::move(painter));
+}
+
+ClassLight::ClassLight(const ClassTable& classes)
+    : LookLight(VoxelUnits(classes, brightestOf(classes))),
+      colors_(units().unitsOfClasses(classes)) {}
+
+void ClassLight::lightVoxels(const WordPlace&, const std::uint16_t* classes, const OwnLook*,
+                             WordUnits& colors) const {
+    for (std::size_t n = 0; n < 64; ++n)
+        for (int c = 0; c < 4; ++c) colors[std::size_t(c)][n] = colors_[classes[n]][c];
 }
 
 }  // namespace deltasplat

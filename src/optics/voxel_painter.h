@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <openvdb/Types.h>
+
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <memory>
 #include <optional>
 #include <span>
@@ -163,5 +166,70 @@ class VoxelPainter {
 
 /// Returns who paints the voxels of a volume: nobody, if the transfer function says all.
 std::unique_ptr<const VoxelPainter> makePainter(const Volume& volume, const Optics& optics);
+
+/// Returns the look that is a colour, scene-linear and not multiplied by opacity: three half
+/// floats of at least 0, which have one notation each.
+inline OwnLook lookOfColor(const glm::dvec3& color) {
+    OwnLook look;
+    for (int c = 0; c < 3; ++c)
+        look.bits[std::size_t(c)] = openvdb::math::half(float(color[c])).bits();
+    return look;
+}
+
+/// Returns the colour that lookOfColor() made a look of.
+inline glm::dvec3 colorOfLook(const OwnLook& look) {
+    glm::dvec3 color;
+    for (int c = 0; c < 3; ++c) {
+        openvdb::math::half half;
+        half.setBits(look.bits[std::size_t(c)]);
+        color[c] = float(half);
+    }
+    return color;
+}
+
+/// Voxels shine in the colours of their classes.
+class ClassLight : public LookLight {
+  public:
+    explicit ClassLight(const ClassTable& classes);
+
+  protected:
+    void lightVoxels(const WordPlace& place, const std::uint16_t* classes, const OwnLook* looks,
+                     WordUnits& colors) const override;
+
+  private:
+    std::vector<glm::vec4> colors_;  // [classes]: premultiplied
+};
+
+// The painters that makePainter (voxel_painter.h) chooses from, of volumes that are not empty.
+
+/// Returns who colours voxels by where they are.
+/// @param colorBy  not kValue
+std::unique_ptr<const VoxelPainter> makePositionPainter(const Volume& volume, ColorBy colorBy);
+
+/// Returns who knows how voxels lie, so that they reflect lights in the colours of their classes.
+std::unique_ptr<const VoxelPainter> makeShadingPainter(const Volume& volume,
+                                                       const Shading& shading);
+
+/// Returns who draws a surface. Voxels are of the class that is seen by the share of them that lies
+/// inside.
+/// @param shading  empty: in one colour from everywhere
+std::unique_ptr<const VoxelPainter> makeSurfacePainter(const Volume& volume, const Surface& surface,
+                                                       const std::optional<Shading>& shading);
+
+/// Returns who lights fog. Sweeps the volume from each light on.
+/// @param optics  with scattering
+/// @throw Error(kFailed) if there is not enough memory
+std::unique_ptr<const VoxelPainter> makeScatterPainter(const Volume& volume, const Optics& optics);
+
+/// Returns who makes voxels less opaque by how much values change there.
+/// @param factors  Optics::gradientOpacity, not empty
+/// @param inner    who paints them otherwise; null: they look as their classes do
+std::unique_ptr<const VoxelPainter> makeFadingPainter(const Volume& volume,
+                                                      const std::vector<glm::dvec2>& factors,
+                                                      std::unique_ptr<const VoxelPainter> inner);
+
+/// Returns who adds the other parts of a medium, and colours of grids, to a volume, which may be
+/// empty, and lights it as makeScatterPainter does, if that is asked for.
+std::unique_ptr<const VoxelPainter> makeMediumPainter(const Volume& volume, const Optics& optics);
 
 }  // namespace deltasplat

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <glm/common.hpp>
 
-#include "portable_math.h"
+#include "base/portable_math.h"
 
 namespace deltasplat {
 namespace {

@@ -2,7 +2,7 @@
 // Reading blocks of codes as values, compiled once for each SIMD level.
 #include "rays/block_kernels.h"
 
-#include "simd_targets.h"
+#include "base/simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rays/block_kernels.cpp"

@@ -10,6 +10,7 @@
 #include "view/seen_box.h"
 
 namespace deltasplat {
+
 namespace {
 
 // What values between voxels reach.

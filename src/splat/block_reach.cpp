@@ -3,7 +3,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "floor_div.h"
+#include "base/bits.h"
 #include "splat/tile_kernels.h"
 
 namespace deltasplat {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bit_matrix.h"
+#include "base/bits.h"
 
 namespace deltasplat {
 

@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <bit>
 
-#include "floor_div.h"
-#include "simd_targets.h"
+#include "base/bits.h"
+#include "base/simd_targets.h"
 #include "splat/tile_bytes.h"
 
 #undef HWY_TARGET_INCLUDE

@@ -6,9 +6,9 @@
 #include <bit>
 #include <cstring>
 
-#include "memory.h"
-#include "parallel.h"
-#include "simd_targets.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "splat/digit_voxels.cpp"

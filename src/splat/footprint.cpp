@@ -10,10 +10,10 @@
 #include <numeric>
 #include <string>
 
-#include "default_floats.h"
+#include "base/default_floats.h"
+#include "base/portable_math.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "number_text.h"
-#include "portable_math.h"
 
 namespace deltasplat {
 namespace {

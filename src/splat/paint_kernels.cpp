@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstring>
 
-#include "simd_targets.h"
+#include "base/simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "splat/paint_kernels.cpp"

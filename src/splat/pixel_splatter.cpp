@@ -7,7 +7,7 @@
 #include <bit>
 #include <cstring>
 
-#include "bit_matrix.h"
+#include "base/bits.h"
 #include "delta/block_kernels.h"
 
 namespace deltasplat {

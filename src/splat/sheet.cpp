@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
+#include "base/bits.h"
 #include "deltasplat/error.h"
-#include "floor_div.h"
 #include "splat/tile_bytes.h"
 
 namespace deltasplat {

@@ -32,8 +32,7 @@ SheetReading readingOf(const BasePlane& plane, const SheetLayout& layout, int sl
     const glm::dvec2 whole = glm::floor(start);
     // Slices that nearly touch the eye are read at one place.
     const glm::dvec2 bounded = glm::clamp(whole, -2e9, 2e9);
-    const double scale =
-        plane.isParallel() ? 1 : place.scale * plane.spacing() * layout.resolution;
+    const double scale = plane.isParallel() ? 1 : place.scale * plane.spacing() * layout.resolution;
     return {glm::ivec2(bounded) - layout.origin, start - whole, scale, layout.origin};
 }
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "bit_matrix.h"
+#include "base/bits.h"
 
 namespace deltasplat {
 

@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/simd_targets.h"
 #include "deltasplat/optics/class_table.h"
-#include "simd_targets.h"
 #include "splat/tile_bytes.h"
 
 #undef HWY_TARGET_INCLUDE

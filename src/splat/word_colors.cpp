@@ -9,6 +9,7 @@
 #include "optics/digit_kernels.h"
 
 namespace deltasplat {
+
 namespace {
 
 // Calls use(voxel) for the voxels of a mask.
@@ -88,6 +89,12 @@ void WordColors::light(std::size_t word, int slice,
         if (digits[3] != kNothing) out[1]->anyLow |= bit;
         if (digits[2] != kNothing || digits[3] != kNothing) out[1]->any |= bit;
     });
+}
+
+StepColors::StepColors(const PackedDeltas& deltas, ClassTable classes,
+                       std::unique_ptr<const LookLight> light)
+    : classes_(std::move(classes)) {
+    if (light) own_.emplace(deltas, classes_, std::move(light));
 }
 
 }  // namespace deltasplat

@@ -12,13 +12,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/leaf_bytes.h"
 #include "ingest/grids/tree_types.h"
 #include "ingest/vdb/vdb_transform.h"
-#include "memory.h"
-#include "parallel.h"
-#include "synth/sample_voxel.h"
+#include "synth/volumes.h"
 
 namespace deltasplat {
 namespace {

@@ -6,17 +6,16 @@
 #include <limits>
 #include <vector>
 
-#include "default_floats.h"
+#include "base/bits.h"
+#include "base/default_floats.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/text.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "ingest/raw/raw_format.h"
-#include "little_endian.h"
-#include "lower_case.h"
-#include "memory.h"
-#include "number_text.h"
-#include "parallel.h"
 #include "synth/sample_grids.h"
-#include "synth/sample_voxel.h"
+#include "synth/volumes.h"
 #include "vdb/write_vdb.h"
 
 namespace deltasplat {

@@ -11,11 +11,10 @@
 #include <limits>
 #include <utility>
 
-#include "count_text.h"
+#include "base/memory.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "memory.h"
-#include "number_text.h"
-#include "optics/small_text.h"
+#include "optics/located_json.h"
 
 namespace deltasplat {
 namespace {

@@ -9,9 +9,9 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "base/text.h"
 #include "cameras/motion.h"
 #include "deltasplat/error.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

@@ -6,10 +6,10 @@
 #include <memory>
 #include <utility>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "ingest/files/input_files.h"
+#include "ingest/input_files.h"
 #include "ingest/placement.h"
-#include "number_text.h"
 #include "usd/usd_scene.h"
 
 namespace deltasplat {

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "ingest/codes/code_math.h"
 #include "ingest/codes/code_tree.h"
-#include "ingest/codes/code_values.h"
 #include "ingest/values/value_cast.h"
 #include "vdb/tree_writer.h"
 

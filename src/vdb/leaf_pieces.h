@@ -7,9 +7,17 @@
 #include <string>
 #include <vector>
 
-#include "vdb/written_tree.h"
+#include "vdb/written_grid.h"
 
 namespace deltasplat {
+
+/// Returns the value of a grid's metadata "file_delayed_load" as a file has it, which leafSizesOf
+/// reads.
+/// @param kinds    of leaves in the order of the file, as PackedLeaves has them
+/// @param sizes    likewise
+/// @param mayPack  whether they are packed by Blosc where that makes them smaller
+std::string leafNotes(const std::vector<std::int8_t>& kinds, const std::vector<std::int64_t>& sizes,
+                      bool mayPack);
 
 /// The leaves of a tree, packed on all threads. A file has to say how large they are before it has
 /// them: so all are packed, and those for which there is no room are packed once more when they are

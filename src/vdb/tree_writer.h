@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "vdb/pack_values.h"
-#include "vdb/written_tree.h"
+#include "vdb/written_grid.h"
 
 namespace deltasplat {
 

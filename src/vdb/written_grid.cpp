@@ -8,6 +8,7 @@
 #include "vdb/tree_writer.h"
 
 namespace deltasplat {
+
 namespace {
 
 template <typename Values>

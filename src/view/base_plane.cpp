@@ -11,8 +11,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "base/parallel.h"
 #include "optics/opacity_steps.h"
-#include "parallel.h"
 
 namespace deltasplat {
 namespace {

@@ -8,12 +8,11 @@
 #include <numbers>
 #include <utility>
 
-#include "default_floats.h"
+#include "base/affine.h"
+#include "base/default_floats.h"
+#include "base/portable_math.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "number_text.h"
-#include "portable_math.h"
-#include "suggest.h"
-#include "view/affine.h"
 #include "view/camera_axes.h"
 #include "view/check_camera.h"
 

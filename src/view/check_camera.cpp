@@ -8,8 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "number_text.h"
 
 namespace deltasplat {
 

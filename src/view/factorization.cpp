@@ -3,7 +3,7 @@
 // Viewing Transformation, 1994. Deviates in that the base plane is sampled at a whole number of
 // points a voxel, or of voxels a point, and in that near-ties and near-zero shifts are snapped (see
 // factorize).
-#include "deltasplat/view/factorization.h"
+#include "view/factorization.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,16 +15,17 @@
 #include <numbers>
 #include <string>
 
-#include "default_floats.h"
+#include "base/affine.h"
+#include "base/default_floats.h"
+#include "base/portable_math.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/slot.h"
-#include "number_text.h"
-#include "portable_math.h"
-#include "view/affine.h"
+#include "deltasplat/view/factorization.h"
 #include "view/joined_slants.h"
-#include "view/most_parallel.h"
 
 namespace deltasplat {
+
 namespace {
 
 // Beyond, footprints are so wide (defaultSigma) that more sheet pixels would show nothing else.

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "default_floats.h"
-#include "number_text.h"
+#include "base/default_floats.h"
+#include "base/text.h"
 #include "view/camera_axes.h"
 
 namespace deltasplat {

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "view/most_parallel.h"
+#include "view/factorization.h"
 
 namespace deltasplat {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/view/camera.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "portable_math.h"
+#include "base/portable_math.h"
 
 namespace deltasplat {
 

@@ -22,11 +22,11 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/prepared_scene.h"
 #include "deltasplat/render.h"
 #include "deltasplat/threads.h"
-#include "stopwatch.h"
 
 namespace {
 

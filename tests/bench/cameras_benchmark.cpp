@@ -13,10 +13,10 @@
 #include <memory>
 #include <vector>
 
+#include "base/progress.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/prepared_scene.h"
 #include "deltasplat/render.h"
-#include "stopwatch.h"
 
 namespace {
 

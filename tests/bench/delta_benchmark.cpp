@@ -14,14 +14,14 @@
 #include <string>
 #include <vector>
 
+#include "base/parallel.h"
+#include "base/progress.h"
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/threads.h"
 #include "ingest/grids/tree_types.h"
 #include "ingest/raw/raw_format.h"
-#include "parallel.h"
-#include "stopwatch.h"
 
 namespace {
 

@@ -17,10 +17,10 @@
 #include <string>
 #include <vector>
 
+#include "base/parallel.h"
+#include "base/text.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "dims_text.h"
 #include "ingest/codes/code_tree.h"
-#include "parallel.h"
 
 namespace {
 

@@ -11,9 +11,9 @@
 #include <memory>
 #include <vector>
 
+#include "base/progress.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/prepared_scene.h"
-#include "stopwatch.h"
 
 namespace {
 

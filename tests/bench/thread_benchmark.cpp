@@ -10,10 +10,10 @@
 #include <cstdlib>
 #include <exception>
 
+#include "base/progress.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/render.h"
 #include "deltasplat/threads.h"
-#include "stopwatch.h"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/grids/tree_types.h"
 #include "unit/ingest_helpers.h"
 

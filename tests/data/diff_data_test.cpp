@@ -12,7 +12,7 @@
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "ingest/codes/code_tree.h"
-#include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/grids/tree_types.h"
 #include "support/kept_grid.h"
 

@@ -19,7 +19,7 @@
 #include "support/odd_floats.h"
 #include "support/simd_levels.h"
 #include "support/small_joined.h"
-#include "synth/hash.h"
+#include "synth/noise.h"
 
 namespace deltasplat::test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/synth/write_analytic.h"
-#include "synth/hash.h"
+#include "synth/noise.h"
 #include "unit/temp_folder.h"
 
 namespace deltasplat::test {

@@ -20,7 +20,7 @@
 #include "deltasplat/ingest/read_volume.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/delta/delta_format.h"
-#include "ingest/grids/file_metadata.h"
+#include "ingest/grids/grid_metadata.h"
 #include "reference/plain_delta_reader.h"
 #include "support/kept_grid.h"
 #include "support/same_volume.h"

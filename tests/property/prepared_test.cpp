@@ -9,14 +9,14 @@
 #include <thread>
 #include <vector>
 
+#include "base/kept_memory.h"
 #include "deltasplat/error.h"
 #include "deltasplat/prepared_scene.h"
 #include "deltasplat/render.h"
 #include "deltasplat/threads.h"
-#include "kept_memory.h"
-#include "picture_view.h"
-#include "prepared_axis.h"
-#include "sheet_plan.h"
+#include "picture/picture_view.h"
+#include "picture/prepared_axis.h"
+#include "picture/sheet_plan.h"
 #include "support/error_of.h"
 #include "support/make_volume.h"
 #include "support/small_joined.h"

@@ -15,7 +15,7 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
-#include "picture_layout.h"
+#include "picture/parts/layout_json.h"
 #include "support/error_of.h"
 #include "support/small_joined.h"
 #include "support/some_scene.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "deltasplat/ingest/volume.h"
-#include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/grids/tree_types.h"
 
 namespace deltasplat::testing {

@@ -9,7 +9,7 @@
 #include "../tools/bench/heat_map.h"
 #include "../tools/page/picture_data.h"
 #include "deltasplat/error.h"
-#include "srgb.h"
+#include "image/srgb.h"
 #include "unit/temp_folder.h"
 
 namespace deltasplat {

@@ -10,8 +10,6 @@
 #include <limits>
 #include <random>
 
-#include "ingest/codes/error_meter.h"
-
 namespace deltasplat {
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cgroup.h"
+#include "base/cgroup.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "checked_json.h"
+#include "files/checked_json.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -8,7 +8,7 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/memory_limit.h"
-#include "ingest/files/file_name.h"
+#include "files/file_name.h"
 #include "support/error_of.h"
 #include "support/memory_beyond.h"
 #include "unit/temp_folder.h"

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "deltasplat/optics/transfer_function.h"
+#include "image/srgb.h"
 #include "optics/color_space.h"
-#include "srgb.h"
 
 namespace deltasplat {
 namespace {

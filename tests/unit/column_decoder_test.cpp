@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "ingest/codes/seen_codes.h"
+#include "ingest/codes/slot_blocks.h"
 #include "ingest/delta/delta_format.h"
-#include "ingest/delta/zigzag.h"
+#include "ingest/delta/exact_slots.h"
 
 namespace deltasplat {
 namespace {

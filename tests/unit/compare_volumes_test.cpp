@@ -14,7 +14,7 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
-#include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_grid.h"
 #include "support/make_volume.h"
 
 namespace deltasplat {

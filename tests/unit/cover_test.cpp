@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "composite/find_covered.h"
+#include "composite/slab_cover.h"
 #include "splat/sheet_cover.h"
 
 namespace deltasplat {

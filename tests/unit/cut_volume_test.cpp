@@ -10,7 +10,7 @@
 #include <map>
 #include <random>
 
-#include "cut/index_plane.h"
+#include "cut/cut_region.h"
 #include "deltasplat/ingest/make_volume.h"
 #include "deltasplat/optics/default_ramp.h"
 #include "support/error_of.h"

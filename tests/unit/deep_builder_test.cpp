@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "deep_view.h"
 #include "deltasplat/memory_limit.h"
 #include "deltasplat/render_deep.h"
+#include "picture/extras/render_deep.h"
 #include "support/error_of.h"
 
 namespace deltasplat {

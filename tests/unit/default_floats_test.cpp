@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "default_floats.h"
+#include "base/default_floats.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <chrono>
 #include <thread>
 
+#include "base/parallel.h"
 #include "deltasplat/threads.h"
-#include "parallel.h"
 #include "support/odd_floats.h"
 
 namespace deltasplat {

@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "delta/delta_tree.h"
+#include "delta/delta_grid.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 #include "support/make_volume.h"

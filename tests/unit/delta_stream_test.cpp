@@ -20,15 +20,14 @@
 #include <vector>
 
 #include "delta/bit_writer.h"
-#include "delta/rice_writer.h"
 #include "delta/stream_writer.h"
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/memory_limit.h"
+#include "ingest/delta/bit_reader.h"
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/plane_kernels.h"
-#include "ingest/delta/rice_code.h"
 #include "ingest/delta/stream_index.h"
 #include "ingest/delta/word_tree.h"
 #include "ingest/vdb/vdb_file.h"

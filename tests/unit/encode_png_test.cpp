@@ -12,7 +12,7 @@
 
 #include "deltasplat/threads.h"
 #include "image/quantize.h"
-#include "srgb.h"
+#include "image/srgb.h"
 #include "unit/temp_folder.h"
 
 namespace deltasplat {

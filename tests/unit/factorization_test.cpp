@@ -10,9 +10,9 @@
 #include <glm/matrix.hpp>
 #include <random>
 
+#include "base/text.h"
 #include "deltasplat/delta/delta_grid.h"
 #include "deltasplat/error.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

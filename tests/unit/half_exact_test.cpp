@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Grids that survive half precision are written, read by OpenVDB and compared; those that are said
 // not to survive are shown to lose something.
-#include "convert/half_exact.h"
+#include "convert/volume_grid.h"
 #include "ingest/grids/tree_types.h"
 
 #include <gtest/gtest.h>

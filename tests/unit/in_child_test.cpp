@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ingest/guards/in_child.h"
+#include "base/in_child.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kept_memory.h"
+#include "base/kept_memory.h"
 
 #include <gtest/gtest.h>
 

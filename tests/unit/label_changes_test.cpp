@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "optics/label_changes.h"
+#include "optics/label_function.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 
 #include "deltasplat/optics/presets.h"
 #include "optics/color_curve.h"
-#include "optics/label_function.h"
 #include "support/error_of.h"
 #include "support/make_volume.h"
 

@@ -17,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-#include "ingest/guards/cleared_memory.h"
+#include "base/cleared_memory.h"
 #include "process/reuse_memory.h"
 
 namespace deltasplat {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-#include "composite/layer_fold.h"
+#include "composite/layer.h"
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/simd.h"
 #include "support/simd_levels.h"

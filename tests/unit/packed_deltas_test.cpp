@@ -16,9 +16,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/bits.h"
 #include "delta/slice_joiner.h"
 #include "deltasplat/threads.h"
-#include "floor_div.h"
 #include "support/make_volume.h"
 #include "support/simd_levels.h"
 #include "view/joined_slants.h"

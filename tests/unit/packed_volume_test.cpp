@@ -8,7 +8,7 @@
 
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/threads.h"
-#include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/grids/tree_types.h"
 #include "ingest/vdb/packed_grid.h"
 #include "unit/convert_helpers.h"

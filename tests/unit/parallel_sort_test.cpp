@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "parallel_sort.h"
+#include "base/sorting.h"
 
 #include <gtest/gtest.h>
 

@@ -13,10 +13,11 @@
 #include <limits>
 #include <vector>
 
+#include "base/affine.h"
 #include "deltasplat/threads.h"
+#include "ingest/placement.h"
 #include "light/light_depths.h"
 #include "support/lit_fog.h"
-#include "view/affine.h"
 
 namespace deltasplat {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "portable_math.h"
+#include "base/portable_math.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "synth/hash.h"
+#include "synth/noise.h"
 
 namespace deltasplat {
 namespace {

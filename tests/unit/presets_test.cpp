@@ -9,11 +9,11 @@
 
 #include "deltasplat/optics/default_ramp.h"
 #include "deltasplat/optics/transfer_function_names.h"
+#include "image/srgb.h"
 #include "optics/check_optics.h"
 #include "optics/color_curve.h"
 #include "optics/read_label_table.h"
 #include "optics/value_colors.h"
-#include "srgb.h"
 #include "support/error_of.h"
 #include "support/make_volume.h"
 #include "unit/temp_folder.h"

@@ -5,8 +5,8 @@
 
 #include <limits>
 
-#include "ingest/files/file_name.h"
-#include "number_text.h"
+#include "base/text.h"
+#include "files/file_name.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {

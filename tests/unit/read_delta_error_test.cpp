@@ -5,12 +5,12 @@
 #include <cmath>
 #include <functional>
 
+#include "base/text.h"
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/memory_limit.h"
 #include "ingest/delta/delta_format.h"
 #include "ingest/grids/tree_types.h"
-#include "number_text.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {

@@ -23,7 +23,6 @@
 #include "deltasplat/memory_limit.h"
 #include "deltasplat/render.h"
 #include "ingest/codes/code_tree.h"
-#include "ingest/codes/seen_codes.h"
 #include "ingest/codes/slot_blocks.h"
 #include "ingest/delta/word_tree.h"
 #include "ingest/grids/tree_types.h"

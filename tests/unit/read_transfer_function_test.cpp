@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/transfer_function.h"
-#include "number_text.h"
 #include "optics/color_path.h"
 #include "optics/color_space.h"
 

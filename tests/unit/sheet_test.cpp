@@ -6,7 +6,7 @@
 #include <array>
 #include <random>
 
-#include "bit_matrix.h"
+#include "base/bits.h"
 #include "deltasplat/simd.h"
 #include "splat/block_reach.h"
 #include "splat/stamp_kernels.h"

@@ -10,7 +10,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/optics/sky.h"
 #include "support/error_of.h"
-#include "synth/hash.h"
+#include "synth/noise.h"
 #include "unit/latlong_helpers.h"
 
 namespace deltasplat {

@@ -11,9 +11,9 @@
 #include <thread>
 #include <vector>
 
+#include "base/parallel.h"
+#include "base/progress.h"
 #include "deltasplat/error.h"
-#include "parallel.h"
-#include "shared_progress.h"
 
 namespace deltasplat {
 namespace {

@@ -9,9 +9,9 @@
 #include <cmath>
 #include <limits>
 
+#include "image/srgb.h"
 #include "optics/color_curve.h"
 #include "optics/hidden_values.h"
-#include "srgb.h"
 
 namespace deltasplat {
 namespace {

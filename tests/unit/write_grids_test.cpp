@@ -13,7 +13,7 @@
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "ingest/grids/tree_types.h"
-#include "length_unit.h"
+#include "ingest/length_unit.h"
 #include "unit/convert_helpers.h"
 #include "unit/format_helpers.h"
 #include "unit/vdb_compare.h"

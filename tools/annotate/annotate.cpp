@@ -9,7 +9,7 @@
 #include "annotate/axes.h"
 #include "annotate/scale_bar.h"
 #include "annotate/text_lines.h"
-#include "luminance.h"
+#include "image/srgb.h"
 
 namespace deltasplat {
 namespace {

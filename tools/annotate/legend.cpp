@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text.h"
 #include "drawing/nice_step.h"
 #include "drawing/shapes.h"
 #include "drawing/stroke_font.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text.h"
 #include "drawing/nice_step.h"
-#include "length_unit.h"
-#include "number_text.h"
+#include "ingest/length_unit.h"
 
 namespace deltasplat {
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "deltasplat/error.h"
-#include "ingest/files/file_name.h"
-#include "ingest/files/name_signs.h"
+#include "files/file_name.h"
+#include "ingest/name_signs.h"
 
 namespace deltasplat {
 namespace {

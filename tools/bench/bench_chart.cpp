@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text.h"
 #include "bench/bench_words.h"
 #include "drawing/nice_step.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

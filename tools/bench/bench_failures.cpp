@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/bench_failures.h"
 
+#include "base/text.h"
 #include "listener.h"
-#include "number_text.h"
 
 namespace deltasplat {
 

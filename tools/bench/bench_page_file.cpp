@@ -3,10 +3,10 @@
 
 #include <system_error>
 
-#include "cannot_write.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "deltasplat/image/write_image.h"
+#include "files/descriptor.h"
 
 namespace deltasplat {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "memory.h"
-#include "number_text.h"
+#include "base/memory.h"
+#include "base/text.h"
 #include "text/axis_name.h"
 #include "text/resolution_text.h"
 #include "version.h"

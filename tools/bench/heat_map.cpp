@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "srgb.h"
+#include "image/srgb.h"
 
 namespace deltasplat {
 namespace {

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <thread>
 
+#include "base/text.h"
 #include "deltasplat/simd.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {

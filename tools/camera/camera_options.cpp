@@ -5,14 +5,14 @@
 #include <glm/geometric.hpp>
 #include <string>
 
+#include "base/affine.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "ingest/files/name_signs.h"
-#include "number_text.h"
+#include "ingest/name_signs.h"
 #include "options/command_line.h"
 #include "options/file_and_name.h"
 #include "sequence/frame_name.h"
 #include "text/short_number.h"
-#include "view/affine.h"
 
 namespace deltasplat {
 namespace {

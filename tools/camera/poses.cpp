@@ -9,11 +9,10 @@
 #include <string>
 #include <string_view>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "number_text.h"
-#include "optics/small_text.h"
+#include "optics/located_json.h"
 #include "options/parse.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "box_voxels.h"
+#include "ingest/box_voxels.h"
 #include "options/parse.h"
 #include "process/peak_bytes.h"
 #include "text/json_text.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "name_list.h"
+#include "base/text.h"
 
 namespace deltasplat {
 

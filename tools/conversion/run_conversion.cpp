@@ -10,18 +10,18 @@
 #include <utility>
 #include <vector>
 
+#include "base/memory.h"
+#include "base/progress.h"
 #include "conversion/conversion_files.h"
 #include "deltasplat/threads.h"
-#include "ingest/files/file_name.h"
-#include "ingest/files/name_signs.h"
-#include "memory.h"
+#include "files/file_name.h"
+#include "ingest/name_signs.h"
 #include "modules/load_early.h"
 #include "output_files.h"
 #include "process/interrupt.h"
 #include "sequence/frame_name.h"
 #include "sequence/frames_to_make.h"
 #include "sequence/run_frames.h"
-#include "stopwatch.h"
 
 namespace deltasplat {
 namespace {

@@ -3,13 +3,13 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/progress.h"
 #include "conversion/read_grids.h"
 #include "conversion/run_conversion.h"
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "ingest/read_compared.h"
-#include "listener_part.h"
 #include "optics/read_label_table.h"
 #include "options/input_options.h"
 #include "subcommands.h"

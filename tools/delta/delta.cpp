@@ -6,16 +6,15 @@
 #include <memory>
 #include <optional>
 
+#include "base/progress.h"
+#include "base/text.h"
 #include "conversion/read_grids.h"
 #include "conversion/run_conversion.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
+#include "files/file_name.h"
 #include "ingest/delta/delta_origin.h"
-#include "ingest/files/file_name.h"
-#include "listener_part.h"
-#include "name_list.h"
-#include "number_text.h"
 #include "options/input_options.h"
 #include "options/parse.h"
 #include "process/print_out.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "diff/diff_options.h"
 
-#include "number_text.h"
+#include "base/text.h"
 #include "options/input_options.h"
 
 namespace deltasplat {

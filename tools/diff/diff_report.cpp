@@ -5,9 +5,7 @@
 #include <cstdio>
 #include <glm/vec4.hpp>
 
-#include "count_text.h"
-#include "dims_text.h"
-#include "number_text.h"
+#include "base/text.h"
 #include "options/parse.h"
 #include "text/json_text.h"
 #include "text/text_line.h"

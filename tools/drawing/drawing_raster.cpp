@@ -7,10 +7,10 @@
 #include <glm/vec3.hpp>
 #include <utility>
 
+#include "base/memory.h"
 #include "drawing/drawing.h"
 #include "drawing/stroke_font.h"
-#include "memory.h"
-#include "srgb.h"
+#include "image/srgb.h"
 
 namespace deltasplat {
 namespace {

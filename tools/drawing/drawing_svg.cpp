@@ -2,8 +2,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/text.h"
 #include "drawing/drawing.h"
-#include "number_text.h"
 #include "text/utf8_text.h"
 
 namespace deltasplat {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drawing/plot_file.h"
 
+#include "base/text.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "deltasplat/image/write_image.h"
-#include "lower_case.h"
 
 namespace deltasplat {
 namespace {

@@ -8,7 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "drawing/drawing.h"
-#include "srgb.h"
+#include "image/srgb.h"
 
 namespace deltasplat {
 

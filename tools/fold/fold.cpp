@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/memory.h"
+#include "base/progress.h"
 #include "batch/file_pattern.h"
 #include "deltasplat/error.h"
 #include "deltasplat/slab_part.h"
-#include "ingest/files/name_signs.h"
+#include "ingest/name_signs.h"
 #include "listener.h"
-#include "listener_part.h"
-#include "memory.h"
 #include "output_files.h"
 #include "process/interrupt.h"
 #include "render/color_options.h"

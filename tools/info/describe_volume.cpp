@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/text.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "deltasplat/optics/class_table.h"
 #include "info/slice_plot.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

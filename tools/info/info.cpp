@@ -3,17 +3,17 @@
 #include <memory>
 #include <thread>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "dims_text.h"
 #include "drawing/plot_file.h"
 #include "info/describe_volume.h"
 #include "info/info_list.h"
 #include "info/info_report.h"
 #include "info/sequence_report.h"
 #include "info/slice_plot.h"
-#include "ingest/files/input_kind.h"
+#include "ingest/input_kind.h"
 #include "listener.h"
 #include "options/input_options.h"
 #include "options/transfer_function_option.h"

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "box_voxels.h"
 #include "deltasplat/ingest/label_list.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "info/sequence_report.h"
+#include "ingest/box_voxels.h"
 #include "text/json_text.h"
 #include "volume_place.h"
 

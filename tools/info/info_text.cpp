@@ -3,15 +3,14 @@
 #include <cmath>
 #include <cstdio>
 
-#include "box_voxels.h"
+#include "base/memory.h"
+#include "base/text.h"
 #include "deltasplat/ingest/label_list.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "info/info_report.h"
-#include "memory.h"
-#include "number_text.h"
+#include "ingest/box_voxels.h"
 #include "options/parse.h"
 #include "options/volume_choices.h"
-#include "printable.h"
 #include "text/short_number.h"
 #include "text/text_line.h"
 #include "volume_place.h"

@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 #include <limits>
 
-#include "number_text.h"
+#include "base/text.h"
 #include "options/parse.h"
 #include "text/text_line.h"
 #include "volume_place.h"

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "box_voxels.h"
+#include "base/text.h"
 #include "drawing/nice_step.h"
 #include "drawing/stroke_font.h"
-#include "number_text.h"
+#include "ingest/box_voxels.h"
 
 namespace deltasplat {
 namespace {

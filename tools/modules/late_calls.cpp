@@ -7,9 +7,9 @@
 #include <mutex>
 #include <string>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "modules/load_modules.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {

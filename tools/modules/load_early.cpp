@@ -3,9 +3,9 @@
 
 #include <system_error>
 
+#include "base/text.h"
 #include "deltasplat/memory_limit.h"
 #include "deltasplat/threads.h"
-#include "lower_case.h"
 #include "modules/image_module.h"
 
 namespace deltasplat {

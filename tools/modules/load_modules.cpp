@@ -11,13 +11,13 @@
 #include <string>
 #include <system_error>
 
+#include "base/memory.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "memory.h"
 #include "modules/image_module.h"
 #include "modules/medical_module.h"
 #include "modules/module_version.h"
 #include "modules/open_library.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {

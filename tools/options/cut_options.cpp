@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "dims_text.h"
-#include "ingest/files/input_kind.h"
+#include "ingest/input_kind.h"
 #include "ingest/raw/raw_format.h"
 #include "options/command_line.h"
 #include "options/file_and_name.h"

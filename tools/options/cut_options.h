@@ -8,7 +8,7 @@
 
 #include "deltasplat/cut/cut_volume.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "optics/label_changes.h"
+#include "optics/label_function.h"
 
 namespace deltasplat {
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/shading.h"
-#include "number_text.h"
 #include "options/command_line.h"
 #include "options/parse.h"
 

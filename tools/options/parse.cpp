@@ -8,10 +8,9 @@
 #include <optional>
 #include <string_view>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "ingest/placement.h"
-#include "number_text.h"
-#include "suggest.h"
 
 namespace deltasplat {
 namespace {

@@ -7,8 +7,8 @@
 #include <glm/mat4x4.hpp>
 #include <string>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "number_text.h"
 #include "options/command_line.h"
 #include "options/parse.h"
 

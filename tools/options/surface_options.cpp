@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <string>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "number_text.h"
 #include "options/command_line.h"
 #include "options/parse.h"
 

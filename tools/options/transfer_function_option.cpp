@@ -4,13 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/transfer_function_names.h"
-#include "lower_case.h"
+#include "optics/located_json.h"
 #include "optics/read_label_table.h"
-#include "optics/small_text.h"
 #include "options/file_and_name.h"
-#include "suggest.h"
 
 namespace deltasplat {
 namespace {

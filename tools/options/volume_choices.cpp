@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "options/volume_choices.h"
 
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "ingest/files/input_kind.h"
-#include "printable.h"
+#include "ingest/input_kind.h"
 
 namespace deltasplat {
 namespace {

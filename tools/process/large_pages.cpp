@@ -31,7 +31,7 @@
 #include <cstdint>
 #include <new>
 
-#include "ingest/guards/cleared_memory.h"
+#include "base/cleared_memory.h"
 
 namespace deltasplat {
 namespace {

@@ -19,11 +19,10 @@
 #include <string_view>
 #include <utility>
 
-#include "cannot_write.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "descriptor.h"
-#include "output_target.h"
-#include "printable.h"
+#include "files/descriptor.h"
+#include "files/output_target.h"
 #include "process/peak_bytes.h"
 
 namespace deltasplat {

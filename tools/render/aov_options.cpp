@@ -5,11 +5,10 @@
 #include <array>
 #include <string>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "number_text.h"
 #include "options/parse.h"
 #include "render/render_modes.h"
-#include "suggest.h"
 
 namespace deltasplat {
 namespace {

@@ -11,8 +11,8 @@
 #include "batch/file_pattern.h"
 #include "batch/output_name.h"
 #include "deltasplat/ingest/list_grids.h"
-#include "ingest/files/file_name.h"
-#include "ingest/files/input_files.h"
+#include "files/file_name.h"
+#include "ingest/input_files.h"
 #include "render/preview_file.h"
 
 namespace deltasplat {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "dims_text.h"
 #include "options/parse.h"
 #include "render/render_modes.h"
 

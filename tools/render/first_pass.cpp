@@ -7,18 +7,17 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "checked_json.h"
+#include "base/text.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
-#include "file_mark.h"
+#include "files/checked_json.h"
+#include "files/file_mark.h"
 #include "output_files.h"
-#include "printable.h"
 #include "render/render_options.h"
 #include "sequence/frame_name.h"
 #include "sequence/frames_to_make.h"
 #include "sequence/sequence_look.h"
 #include "text/utf8_text.h"
-#include "whole_number.h"
 
 namespace deltasplat {
 namespace {

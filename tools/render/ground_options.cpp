@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "number_text.h"
 #include "options/parse.h"
 #include "render/render_input.h"
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "base/text.h"
 #include "deltasplat/optics/presets.h"
 #include "drawing/shapes.h"
-#include "number_text.h"
 #include "optics/color_curve.h"
 
 namespace deltasplat {

@@ -8,15 +8,14 @@
 #include <string>
 
 #include "annotate/annotate.h"
+#include "base/progress.h"
+#include "base/text.h"
 #include "camera/camera_options.h"
 #include "deltasplat/hold_out.h"
 #include "deltasplat/image/write_deep_image.h"
 #include "deltasplat/render.h"
 #include "deltasplat/render_deep.h"
-#include "dims_text.h"
 #include "image/quantize.h"
-#include "listener_part.h"
-#include "number_text.h"
 #include "output_files.h"
 #include "process/leave_to_system.h"
 #include "render/aov_options.h"
@@ -32,7 +31,6 @@
 #include "render/tone_options.h"
 #include "render/validate.h"
 #include "render/value_window.h"
-#include "stopwatch.h"
 #include "volume_place.h"
 
 namespace deltasplat {

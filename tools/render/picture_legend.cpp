@@ -8,10 +8,10 @@
 #include <memory>
 #include <string>
 
+#include "base/text.h"
 #include "deltasplat/ingest/label_list.h"
 #include "deltasplat/optics/default_ramp.h"
 #include "drawing/shapes.h"
-#include "number_text.h"
 #include "optics/color_curve.h"
 #include "options/transfer_function_option.h"
 #include "render/list_presets.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "number_text.h"
+#include "base/text.h"
 #include "render/color_options.h"
 #include "render/exr_options.h"
 #include "render/render_modes.h"

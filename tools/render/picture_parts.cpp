@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/memory.h"
+#include "base/progress.h"
+#include "base/text.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/image/exr_rows.h"
 #include "deltasplat/image/tone.h"
 #include "deltasplat/image/write_image.h"
 #include "deltasplat/parted_picture.h"
-#include "dims_text.h"
 #include "image/seen_box.h"
-#include "listener_part.h"
-#include "memory.h"
 #include "render/render_modes.h"
 #include "render/tone_options.h"
 

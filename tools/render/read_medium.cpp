@@ -6,22 +6,21 @@
 #include <optional>
 #include <utility>
 
+#include "base/affine.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/optics/emission_lights.h"
 #include "deltasplat/optics/presets.h"
-#include "ingest/files/input_kind.h"
+#include "ingest/input_kind.h"
 #include "medium/part_looks.h"
 #include "medium/part_sampler.h"
-#include "name_list.h"
-#include "number_text.h"
 #include "optics/blackbody.h"
-#include "optics/color_factor.h"
+#include "optics/color_space.h"
 #include "options/parse.h"
 #include "options/transfer_function_option.h"
 #include "render/scene_input.h"
 #include "text/short_number.h"
-#include "view/affine.h"
 
 namespace deltasplat {
 namespace {

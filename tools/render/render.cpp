@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/progress.h"
 #include "camera/camera_options.h"
 #include "listener.h"
-#include "listener_part.h"
 #include "modules/load_early.h"
 #include "options/input_options.h"
 #include "output_files.h"
@@ -33,7 +33,6 @@
 #include "render/slab_options.h"
 #include "render/tone_options.h"
 #include "render/validate.h"
-#include "stopwatch.h"
 #include "subcommands.h"
 
 namespace deltasplat {

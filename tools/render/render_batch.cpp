@@ -6,22 +6,22 @@
 #include <optional>
 #include <utility>
 
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "base/text.h"
 #include "batch/file_pattern.h"
 #include "batch/memory_gate.h"
 #include "batch/output_name.h"
-#include "box_voxels.h"
 #include "conversion/conversion_stats.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/threads.h"
 #include "flag_names.h"
 #include "image/thumbnail.h"
+#include "ingest/box_voxels.h"
 #include "listener.h"
-#include "lower_case.h"
-#include "memory.h"
 #include "output_files.h"
-#include "parallel.h"
-#include "printable.h"
 #include "process/interrupt.h"
 #include "process/reuse_memory.h"
 #include "process/terminate.h"
@@ -31,7 +31,6 @@
 #include "sequence/frame_name.h"
 #include "sequence/frames_to_make.h"
 #include "sequence/run_frames.h"
-#include "stopwatch.h"
 
 namespace deltasplat {
 namespace {

@@ -7,11 +7,10 @@
 #include <optional>
 #include <string>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/default_ramp.h"
-#include "number_text.h"
 #include "optics/hidden_values.h"
-#include "optics/label_changes.h"
 #include "optics/label_function.h"
 #include "optics/scaled_values.h"
 #include "optics/value_colors.h"

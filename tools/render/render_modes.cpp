@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "lower_case.h"
 #include "options/input_options.h"
 #include "render/value_window.h"
 

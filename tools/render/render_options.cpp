@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/affine.h"
+#include "base/text.h"
 #include "camera/camera_options.h"
 #include "deltasplat/error.h"
 #include "deltasplat/splat/footprint.h"
-#include "dims_text.h"
 #include "drawing/plot_file.h"
-#include "number_text.h"
 #include "options/input_options.h"
 #include "process/print_out.h"
 #include "program.h"
@@ -28,8 +28,6 @@
 #include "render/render_sequence.h"
 #include "render/slab_options.h"
 #include "render/tone_options.h"
-#include "suggest.h"
-#include "view/affine.h"
 
 namespace deltasplat {
 namespace {

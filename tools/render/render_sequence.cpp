@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/memory.h"
+#include "base/progress.h"
 #include "camera/camera_options.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
-#include "ingest/files/name_signs.h"
-#include "listener_part.h"
-#include "memory.h"
+#include "ingest/name_signs.h"
 #include "options/file_and_name.h"
 #include "options/transfer_function_option.h"
 #include "output_files.h"

@@ -7,10 +7,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "count_text.h"
+#include "base/text.h"
 #include "deltasplat/simd.h"
 #include "deltasplat/threads.h"
-#include "number_text.h"
 #include "process/peak_bytes.h"
 #include "text/axis_name.h"
 #include "text/json_text.h"

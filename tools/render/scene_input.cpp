@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/scene_input.h"
 
+#include "base/text.h"
 #include "deltasplat/error.h"
+#include "ingest/length_unit.h"
 #include "ingest/placement.h"
-#include "length_unit.h"
-#include "lower_case.h"
-#include "number_text.h"
 #include "options/file_and_name.h"
 
 namespace deltasplat {

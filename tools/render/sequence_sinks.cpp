@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "base/memory.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "dims_text.h"
-#include "ingest/files/name_signs.h"
-#include "memory.h"
+#include "ingest/name_signs.h"
 #include "render/color_options.h"
 #include "render/render_modes.h"
 #include "render/tone_options.h"

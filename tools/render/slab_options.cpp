@@ -8,10 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/progress.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "listener_part.h"
-#include "lower_case.h"
-#include "number_text.h"
 #include "options/parse.h"
 #include "output_files.h"
 #include "render/picture_metadata.h"

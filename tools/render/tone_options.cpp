@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "base/text.h"
 #include "deltasplat/image/tone.h"
-#include "number_text.h"
 #include "render/render_modes.h"
 
 namespace deltasplat {

@@ -8,9 +8,9 @@
 #include <limits>
 #include <vector>
 
-#include "parallel.h"
-#include "portable_math.h"
-#include "srgb.h"
+#include "base/parallel.h"
+#include "base/portable_math.h"
+#include "image/srgb.h"
 
 namespace deltasplat {
 namespace {

@@ -4,15 +4,15 @@
 #include <memory>
 #include <optional>
 
+#include "base/progress.h"
+#include "base/text.h"
 #include "conversion/run_conversion.h"
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/files/input_files.h"
-#include "ingest/files/input_kind.h"
-#include "listener_part.h"
-#include "name_list.h"
+#include "ingest/input_files.h"
+#include "ingest/input_kind.h"
 #include "options/input_options.h"
 #include "subcommands.h"
 

@@ -8,10 +8,10 @@
 #include <system_error>
 #include <utility>
 
-#include "ingest/files/input_files.h"
-#include "ingest/files/input_kind.h"
-#include "ingest/files/name_signs.h"
 #include "ingest/images/image_stack.h"
+#include "ingest/input_files.h"
+#include "ingest/input_kind.h"
+#include "ingest/name_signs.h"
 
 namespace deltasplat {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
-#include "image/whole_image.h"
-#include "ingest/files/input_files.h"
-#include "ingest/files/input_kind.h"
+#include "image/thumbnail.h"
+#include "ingest/input_files.h"
+#include "ingest/input_kind.h"
 #include "output_files.h"
 #include "process/run_log.h"
 

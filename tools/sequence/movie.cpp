@@ -16,12 +16,11 @@
 #include <string>
 #include <utility>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/image/write_image.h"
-#include "dims_text.h"
+#include "files/file_name.h"
 #include "image/quantize.h"
-#include "ingest/files/file_name.h"
-#include "number_text.h"
 #include "process/interrupt.h"
 
 // Handed on to the program that is started.

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "base/uncleared.h"
 #include "deltasplat/atomic_file.h"
 #include "sequence/frame_sink.h"
-#include "uncleared_vector.h"
 
 namespace deltasplat {
 

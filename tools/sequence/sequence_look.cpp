@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/sequence_look.h"
+#include "ingest/placement.h"
 
 #include <algorithm>
 #include <bit>
@@ -12,11 +13,11 @@
 #include <utility>
 #include <vector>
 
+#include "base/affine.h"
 #include "deltasplat/error.h"
+#include "files/checked_json.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/grids/grid_metadata.h"
-#include "view/affine.h"
-#include "whole_number.h"
 
 namespace deltasplat {
 namespace {

@@ -12,6 +12,7 @@
 
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/view/world_box.h"
+#include "ingest/placement.h"
 
 namespace deltasplat {
 

@@ -4,12 +4,11 @@
 #include <memory>
 #include <thread>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/synth/write_analytic.h"
-#include "ingest/files/name_signs.h"
+#include "ingest/name_signs.h"
 #include "listener.h"
-#include "lower_case.h"
-#include "number_text.h"
 #include "output_files.h"
 #include "process/interrupt.h"
 #include "process/print_out.h"

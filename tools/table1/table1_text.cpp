@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/text.h"
 #include "bench/bench_words.h"
-#include "dims_text.h"
 #include "table1/table1.h"
 
 namespace deltasplat {

@@ -6,7 +6,7 @@
 #include <string>
 #include <system_error>
 
-#include "number_text.h"
+#include "base/text.h"
 
 namespace deltasplat {
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "deltasplat/index_box.h"
 #include "deltasplat/ingest/code_book.h"
 #include "deltasplat/ingest/source_values.h"
 
@@ -18,26 +19,11 @@ namespace deltasplat {
 /// The OpenVDB tree of codes; defined in src/ingest/codes/code_tree.h for the stages that walk it.
 struct CodeTree;
 
-/// The source's own grid of values; defined in src/ingest/grids/source_grid.h.
+/// The source's own grid of values; defined in src/ingest/grids/tree_grid.h.
 struct SourceGrid;
 
 /// Names and looks of labels; defined in deltasplat/ingest/label_list.h.
 struct LabelList;
-
-/// A box of voxel indices, both corners inclusive; empty when any max < min.
-struct IndexBox {
-    glm::ivec3 min{0};
-    glm::ivec3 max{-1};
-
-    bool empty() const { return max.x < min.x || max.y < min.y || max.z < min.z; }
-    glm::ivec3 dims() const { return empty() ? glm::ivec3(0) : max - min + 1; }
-    /// Readers refuse boxes of more than 2^62 voxels.
-    std::int64_t voxels() const {
-        const glm::ivec3 d = dims();
-        return std::int64_t{d.x} * d.y * d.z;
-    }
-    bool operator==(const IndexBox&) const = default;
-};
 
 /// How the delta grid was made that a volume has been read from.
 struct DeltaOrigin {

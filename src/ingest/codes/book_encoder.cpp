@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "ingest/codes/code_math.h"
-#include "ingest/values/hash_place.h"
+#include "ingest/values/distinct_values.h"
 
 namespace deltasplat {
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "ingest/codes/code_math.h"
-#include "ingest/values/value_spacing.h"
+#include "ingest/values/value_survey.h"
 
 namespace deltasplat {
 namespace {

@@ -11,10 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.h"
 #include "deltasplat/ingest/code_book.h"
+#include "deltasplat/ingest/volume.h"
 #include "deltasplat/threads.h"
 #include "ingest/codes/code_kernels.h"
-#include "parallel.h"
+#include "ingest/codes/code_tree.h"
 
 namespace deltasplat {
 
@@ -132,5 +134,17 @@ class CodeCounts {
 
     std::vector<Counts> counts_;
 };
+
+/// Returns how many active voxels have each code, [65536]. Multi-threaded.
+std::vector<std::uint64_t> histogramOf(const CodeTree::Tree& tree);
+
+/// Returns the histogram of a volume before it was cut: what is cut off counts as well, so that
+/// colours do not change by cutting.
+inline std::vector<std::uint64_t> uncutHistogram(const Volume& volume) {
+    return volume.uncut ? histogramOf(volume.uncut->tree()) : volume.histogram;
+}
+
+/// Returns the box of the active voxels, whose indices must fit.
+IndexBox activeBox(const CodeTree::Tree& tree);
 
 }  // namespace deltasplat

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "simd_targets.h"
+#include "base/simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ingest/codes/code_kernels.cpp"

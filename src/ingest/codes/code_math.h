@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "deltasplat/ingest/code_book.h"
 
@@ -39,6 +40,14 @@ inline Code linearCode(double value, double offset, double step) {
     const double rung = (value - offset) / step + 0.5;
     if (!(rung >= 1)) return 0;
     return rung >= kCodeCount ? Code(kCodeCount - 1) : Code(rung);
+}
+
+/// Returns what every code stands for, [kCodeCount].
+inline std::vector<double> valuesOfCodes(const CodeBook& book) {
+    std::vector<double> values(kCodeCount);
+    for (int code = 0; code < kCodeCount; ++code)
+        values[std::size_t(code)] = book.valueOf(Code(code));
+    return values;
 }
 
 }  // namespace deltasplat

@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "heap_growth.h"
-#include "parallel.h"
+#include "base/memory.h"
+#include "base/parallel.h"
 
 namespace deltasplat {
 namespace {

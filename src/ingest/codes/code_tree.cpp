@@ -7,15 +7,14 @@
 #include <string>
 #include <utility>
 
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/sorting.h"
 #include "deltasplat/error.h"
-#include "heap_growth.h"
 #include "ingest/codes/code_kernels.h"
 #include "ingest/codes/code_nodes.h"
 #include "ingest/codes/leaf_slices.h"
 #include "ingest/codes/slot_blocks.h"
-#include "memory.h"
-#include "parallel.h"
-#include "parallel_sort.h"
 
 template <>
 std::string openvdb::tree::LeafNode<deltasplat::Code, 3>::str() const {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ingest/values/value_spacing.h"
+#include "ingest/values/value_survey.h"
 
 namespace deltasplat {
 namespace {

@@ -8,11 +8,11 @@
 #include <tuple>
 #include <utility>
 
-#include "ingest/codes/seen_codes.h"
-#include "memory.h"
-#include "parallel.h"
+#include "base/memory.h"
+#include "base/parallel.h"
 
 namespace deltasplat {
+
 namespace {
 
 auto keyOf(const glm::ivec3& position) {

@@ -9,11 +9,10 @@
 #include <glm/common.hpp>
 #include <utility>
 
-#include "heap_growth.h"
-#include "ingest/codes/seen_codes.h"
+#include "base/affine.h"
+#include "base/memory.h"
+#include "ingest/codes/slot_blocks.h"
 #include "ingest/delta/delta_format.h"
-#include "memory.h"
-#include "view/affine.h"
 
 namespace deltasplat {
 

@@ -8,17 +8,17 @@
 #include <span>
 #include <utility>
 
-#include "box_voxels.h"
+#include "base/affine.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/progress.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
+#include "ingest/box_voxels.h"
 #include "ingest/codes/code_counts.h"
 #include "ingest/delta/column_decoder.h"
-#include "ingest/delta/place_text.h"
+#include "ingest/delta/delta_columns.h"
 #include "ingest/delta/restored_grid.h"
-#include "memory.h"
-#include "parallel.h"
-#include "shared_progress.h"
-#include "view/affine.h"
 
 namespace deltasplat {
 namespace {

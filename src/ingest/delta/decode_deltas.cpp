@@ -11,18 +11,17 @@
 #include <utility>
 #include <vector>
 
-#include "box_voxels.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/sorting.h"
 #include "deltasplat/error.h"
+#include "ingest/box_voxels.h"
 #include "ingest/codes/leaf_slices.h"
+#include "ingest/delta/delta_columns.h"
 #include "ingest/delta/exact_slots.h"
-#include "ingest/delta/place_text.h"
 #include "ingest/delta/restored_grid.h"
-#include "ingest/delta/zigzag.h"
 #include "ingest/grids/leaf_bytes.h"
 #include "ingest/values/value_cast.h"
-#include "memory.h"
-#include "parallel.h"
-#include "run_begins.h"
 
 namespace deltasplat {
 namespace {

@@ -5,12 +5,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "deltasplat/ingest/volume.h"
 
 namespace deltasplat {
+
+/// Returns a place as messages have it: "(1, 2, 3)".
+inline std::string placeText(const glm::ivec3& v) {
+    return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) +
+           ")";
+}
 
 /// Deltas of a block of 8x8x8 voxels, as numbers without sign (zigzag.h).
 /// @tparam Number  of 32 or 64 bits

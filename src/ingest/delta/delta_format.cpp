@@ -7,13 +7,12 @@
 #include <limits>
 #include <numeric>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "ingest/delta/number_list.h"
 #include "ingest/values/value_cast.h"
-#include "number_text.h"
-#include "printable.h"
 
 namespace deltasplat {
+
 namespace {
 
 constexpr const char* kVersionKey = "delta_version";

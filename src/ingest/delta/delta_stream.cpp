@@ -9,16 +9,16 @@
 #include <string>
 #include <vector>
 
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/slot.h"
+#include "ingest/delta/delta_columns.h"
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/part_walker.h"
-#include "ingest/delta/place_text.h"
 #include "ingest/delta/stream_index.h"
 #include "ingest/delta/word_tree.h"
 #include "ingest/grids/leaf_bytes.h"
-#include "memory.h"
-#include "parallel.h"
 
 namespace deltasplat {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <bit>
 
-#include "ingest/delta/zigzag.h"
-#include "simd_targets.h"
+#include "base/simd_targets.h"
+#include "ingest/delta/exact_slots.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ingest/delta/leaf_kernels.cpp"

@@ -13,7 +13,6 @@
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/delta_stream.h"
 #include "ingest/delta/plane_kernels.h"
-#include "ingest/delta/rice_code.h"
 #include "ingest/delta/stream_index.h"
 
 namespace deltasplat {

@@ -6,7 +6,7 @@
 #include <array>
 #include <bit>
 
-#include "simd_targets.h"
+#include "base/simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ingest/delta/plane_kernels.cpp"

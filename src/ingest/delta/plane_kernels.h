@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "ingest/delta/bit_reader.h"
-#include "ingest/delta/rice_code.h"
 
 namespace deltasplat {
 

@@ -9,9 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/memory.h"
+#include "base/progress.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/slot.h"
-#include "ingest/codes/code_statistics.h"
+#include "ingest/codes/code_counts.h"
 #include "ingest/delta/decode_blocks.h"
 #include "ingest/delta/decode_deltas.h"
 #include "ingest/delta/delta_stream.h"
@@ -21,15 +24,12 @@
 #include "ingest/grids/grid_codes.h"
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_volume.h"
-#include "ingest/grids/source_grid.h"
 #include "ingest/grids/tree_from_codes.h"
+#include "ingest/grids/tree_grid.h"
+#include "ingest/length_unit.h"
 #include "ingest/readers.h"
 #include "ingest/values/value_cast.h"
 #include "ingest/vdb/vdb_transform.h"
-#include "length_unit.h"
-#include "listener_part.h"
-#include "memory.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {

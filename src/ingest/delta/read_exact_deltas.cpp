@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "base/progress.h"
 #include "ingest/delta/decode_deltas.h"
 #include "ingest/delta/restored_grid.h"
 #include "ingest/dense/dense_source.h"
-#include "ingest/grids/source_grid.h"
-#include "listener_part.h"
+#include "ingest/grids/tree_grid.h"
 
 namespace deltasplat {
 namespace {

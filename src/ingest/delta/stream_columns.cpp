@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "ingest/delta/column_order.h"
+#include "base/memory.h"
 #include "ingest/delta/part_walker.h"
 #include "ingest/delta/word_tree.h"
-#include "memory.h"
 
 namespace deltasplat {
+
 namespace {
 
 class StreamWalker : public DeltaWalker {

@@ -8,11 +8,11 @@
 #include <atomic>
 #include <utility>
 
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "deltasplat/error.h"
 #include "ingest/delta/bit_reader.h"
 #include "ingest/delta/delta_format.h"
-#include "memory.h"
-#include "parallel.h"
 
 namespace deltasplat {
 namespace {

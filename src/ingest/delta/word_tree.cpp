@@ -7,11 +7,11 @@
 #include <memory>
 #include <span>
 
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "deltasplat/error.h"
 #include "ingest/delta/bit_reader.h"
 #include "ingest/grids/leaf_bytes.h"
-#include "memory.h"
-#include "parallel.h"
 
 namespace deltasplat {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "base/uncleared.h"
 #include "ingest/grids/tree_types.h"
 #include "ingest/vdb/vdb_leaves.h"
-#include "uncleared_vector.h"
 
 namespace deltasplat {
 

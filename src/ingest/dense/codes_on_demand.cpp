@@ -11,16 +11,15 @@
 #include <span>
 #include <utility>
 
-#include "heap_growth.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/sorting.h"
 #include "ingest/codes/book_encoder.h"
 #include "ingest/codes/code_counts.h"
 #include "ingest/codes/code_kernels.h"
 #include "ingest/dense/dense_tree_builder.h"
 #include "ingest/raw/raw_load.h"
 #include "ingest/raw/raw_values.h"
-#include "memory.h"
-#include "parallel.h"
-#include "parallel_sort.h"
 
 namespace deltasplat {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ingest/codes/code_tree.h"
-#include "ingest/codes/seen_codes.h"
+#include "ingest/codes/slot_blocks.h"
 #include "ingest/dense/dense_source.h"
 
 namespace deltasplat {

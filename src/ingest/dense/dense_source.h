@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <glm/mat4x4.hpp>
 #include <memory>
@@ -13,7 +14,8 @@
 
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/memory_limit.h"
-#include "ingest/files/stored_rows.h"
+#include "files/file_bytes.h"
+#include "ingest/input_kind.h"
 #include "ingest/raw/raw_format.h"
 
 namespace deltasplat {
@@ -77,5 +79,15 @@ Volume readDense(const DenseSource& source, const ReadOptions& options, const Li
 /// NaN if it is: what a .vdb of the others would be.
 Volume readSparse(const DenseSource& source, double background, const ReadOptions& options,
                   const Listener& listener);
+
+/// Opens what is no .vdb, whatever it is, by its headers.
+/// @param kind  as findInput returns it for `input`
+/// @throw as readVolume
+DenseSource openDense(const std::filesystem::path& input, const InputKind& kind,
+                      const ReadOptions& options, const Listener& listener);
+
+/// Reads as readDense, with unsigned integers as readCompared keeps them.
+Volume readDenseUnsigned(const DenseSource& source, const ReadOptions& options,
+                         const Listener& listener);
 
 }  // namespace deltasplat

@@ -16,10 +16,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "deltasplat/threads.h"
-#include "heap_growth.h"
 #include "ingest/codes/code_nodes.h"
-#include "parallel.h"
 
 namespace deltasplat {
 

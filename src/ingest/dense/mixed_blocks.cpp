@@ -5,7 +5,7 @@
 #include <atomic>
 #include <cstring>
 
-#include "parallel.h"
+#include "base/parallel.h"
 
 namespace deltasplat {
 namespace {

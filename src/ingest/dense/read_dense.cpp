@@ -7,7 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "count_text.h"
+#include "base/memory.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/memory_limit.h"
 #include "ingest/codes/code_counts.h"
@@ -15,21 +16,18 @@
 #include "ingest/dense/codes_on_demand.h"
 #include "ingest/dense/dense_source.h"
 #include "ingest/dense/dense_tree_builder.h"
-#include "ingest/dense/dense_unsigned.h"
-#include "ingest/dense/drop_value.h"
 #include "ingest/dense/mixed_blocks.h"
+#include "ingest/dense/rescale.h"
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/grids/grid_volume.h"
 #include "ingest/grids/leaf_bytes.h"
-#include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/grids/tree_types.h"
 #include "ingest/raw/raw_values.h"
 #include "ingest/readers.h"
 #include "ingest/values/value_cast.h"
 #include "ingest/vdb/vdb_transform.h"
-#include "memory.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

@@ -8,11 +8,12 @@
 #include <memory>
 #include <utility>
 
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "ingest/raw/raw_load.h"
-#include "memory.h"
-#include "parallel.h"
 
 namespace deltasplat {
+
 namespace {
 
 constexpr std::size_t kRun = 4096;

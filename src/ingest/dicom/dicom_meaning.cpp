@@ -7,10 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "base/memory.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "memory.h"
-#include "number_text.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {

@@ -18,13 +18,13 @@
 #include <sstream>
 #include <utility>
 
+#include "base/cleared_memory.h"
+#include "base/in_child.h"
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "deltasplat/error.h"
-#include "ingest/guards/cleared_memory.h"
-#include "ingest/guards/in_child.h"
 #include "ingest/raw/raw_load.h"
 #include "ingest/values/value_cast.h"
-#include "memory.h"
-#include "parallel.h"
 
 namespace deltasplat {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

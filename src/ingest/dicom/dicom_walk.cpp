@@ -11,10 +11,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/memory.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "ingest/dicom/dicom_sniff.h"
-#include "memory.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {

@@ -10,19 +10,18 @@
 #include <set>
 #include <utility>
 
+#include "base/memory.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
+#include "files/file_name.h"
 #include "ingest/dense/dense_source.h"
 #include "ingest/dicom/dicom_mosaic.h"
 #include "ingest/dicom/dicom_pixels.h"
-#include "ingest/dicom/dicom_series.h"
 #include "ingest/dicom/dicom_slices.h"
+#include "ingest/dicom/dicom_sniff.h"
 #include "ingest/dicom/dicom_walk.h"
-#include "ingest/files/file_name.h"
-#include "ingest/files/refuse_file.h"
 #include "ingest/placement.h"
-#include "memory.h"
 #include "modules/medical_module.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {

@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.h"
 #include "ingest/grids/grid_values.h"
 #include "ingest/vdb/vdb_file.h"
-#include "shared_progress.h"
 
 namespace deltasplat {
 

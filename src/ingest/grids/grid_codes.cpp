@@ -12,13 +12,12 @@
 #include <utility>
 #include <variant>
 
-#include "count_text.h"
+#include "base/memory.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "heap_growth.h"
 #include "ingest/codes/book_encoder.h"
 #include "ingest/codes/code_counts.h"
 #include "ingest/codes/code_tree.h"
-#include "ingest/codes/error_meter.h"
 #include "ingest/grids/file_leaves.h"
 #include "ingest/grids/grid_errors.h"
 #include "ingest/grids/grid_metadata.h"
@@ -28,7 +27,6 @@
 #include "ingest/grids/tree_types.h"
 #include "ingest/readers.h"
 #include "ingest/values/float_kernels.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

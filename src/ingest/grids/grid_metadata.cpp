@@ -9,8 +9,7 @@
 #include <sstream>
 #include <utility>
 
-#include "lower_case.h"
-#include "number_text.h"
+#include "base/text.h"
 
 namespace deltasplat {
 

@@ -16,10 +16,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.h"
 #include "deltasplat/threads.h"
 #include "ingest/codes/code_nodes.h"
 #include "ingest/values/value_census.h"
-#include "parallel.h"
 
 namespace deltasplat {
 

@@ -5,16 +5,16 @@
 #include <memory>
 #include <utility>
 
+#include "base/memory.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "ingest/codes/code_tree.h"
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/leaf_bytes.h"
-#include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_grid.h"
+#include "ingest/length_unit.h"
 #include "ingest/placement.h"
 #include "ingest/vdb/vdb_transform.h"
-#include "length_unit.h"
-#include "memory.h"
-#include "number_text.h"
 
 namespace deltasplat {
 

@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.h"
 #include "ingest/grids/grid_values.h"
-#include "parallel.h"
 
 namespace deltasplat {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <type_traits>
 
-#include "ingest/values/same_bits.h"
+#include "ingest/values/value_cast.h"
 
 namespace deltasplat {
 

@@ -8,14 +8,14 @@
 #include <cstdint>
 #include <optional>
 
+#include "base/memory.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
-#include "ingest/files/file_bytes.h"
-#include "ingest/files/file_name.h"
-#include "ingest/files/input_kind.h"
+#include "files/file_bytes.h"
+#include "files/file_name.h"
 #include "ingest/images/jpeg_frame.h"
 #include "ingest/images/tiff_pages.h"
-#include "memory.h"
+#include "ingest/input_kind.h"
 
 namespace deltasplat {
 namespace {

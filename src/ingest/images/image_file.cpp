@@ -11,17 +11,17 @@
 #include <utility>
 #include <vector>
 
+#include "base/cleared_memory.h"
+#include "base/silent_stderr.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "exr_threads.h"
-#include "ingest/files/file_bytes.h"
-#include "ingest/files/file_name.h"
-#include "ingest/files/input_kind.h"
-#include "ingest/guards/cleared_memory.h"
-#include "ingest/guards/silent_stderr.h"
+#include "files/file_bytes.h"
+#include "files/file_name.h"
+#include "image/exr_threads.h"
 #include "ingest/images/image_claims.h"
 #include "ingest/images/pgm_samples.h"
 #include "ingest/images/stored_numbers.h"
-#include "printable.h"
+#include "ingest/input_kind.h"
 
 namespace deltasplat {
 namespace {

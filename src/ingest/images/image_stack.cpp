@@ -7,10 +7,10 @@
 #include <map>
 #include <system_error>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "ingest/files/file_name.h"
-#include "ingest/files/name_signs.h"
-#include "printable.h"
+#include "files/file_name.h"
+#include "ingest/name_signs.h"
 
 namespace deltasplat {
 namespace {

@@ -11,12 +11,11 @@
 #include <set>
 #include <utility>
 
+#include "base/memory.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "ingest/images/xml_tags.h"
-#include "length_unit.h"
-#include "memory.h"
-#include "number_text.h"
-#include "printable.h"
+#include "ingest/length_unit.h"
 
 namespace deltasplat {
 namespace {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "base/memory.h"
 #include "deltasplat/error.h"
-#include "ingest/files/file_bytes.h"
-#include "memory.h"
+#include "files/file_bytes.h"
 
 namespace deltasplat {
 namespace {

@@ -14,21 +14,20 @@
 #include <span>
 #include <vector>
 
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "deltasplat/error.h"
+#include "files/file_bytes.h"
+#include "files/file_name.h"
+#include "image/srgb.h"
 #include "ingest/choose_volume.h"
 #include "ingest/dense/dense_source.h"
 #include "ingest/dense/rescale.h"
-#include "ingest/files/file_bytes.h"
-#include "ingest/files/file_name.h"
-#include "ingest/files/refuse_file.h"
 #include "ingest/images/image_file.h"
 #include "ingest/images/tiff_volume.h"
 #include "ingest/placement.h"
 #include "ingest/readers.h"
-#include "luminance.h"
-#include "memory.h"
 #include "modules/image_module.h"
-#include "parallel.h"
 
 namespace deltasplat {
 namespace {

@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "ingest/files/file_bytes.h"
-#include "ingest/files/file_name.h"
+#include "files/file_bytes.h"
+#include "files/file_name.h"
 
 namespace deltasplat {
 namespace {

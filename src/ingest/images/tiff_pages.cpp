@@ -12,10 +12,10 @@
 #include <set>
 #include <string>
 
+#include "base/memory.h"
 #include "deltasplat/error.h"
-#include "ingest/files/file_bytes.h"
+#include "files/file_bytes.h"
 #include "ingest/images/image_claims.h"
-#include "memory.h"
 
 namespace deltasplat {
 namespace {

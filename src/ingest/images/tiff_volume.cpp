@@ -11,14 +11,12 @@
 #include <map>
 #include <sstream>
 
-#include "count_text.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
+#include "files/file_name.h"
 #include "ingest/choose_volume.h"
-#include "ingest/files/refuse_file.h"
 #include "ingest/images/ome_planes.h"
-#include "length_unit.h"
-#include "number_text.h"
-#include "printable.h"
+#include "ingest/length_unit.h"
 
 namespace deltasplat {
 namespace {

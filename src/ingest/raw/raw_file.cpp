@@ -2,17 +2,20 @@
 #include "ingest/raw/raw_file.h"
 
 #include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <memory>
 
-#include "count_text.h"
+#include "base/memory.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "dims_text.h"
-#include "ingest/files/byte_source.h"
-#include "ingest/files/file_name.h"
-#include "memory.h"
+#include "files/file_bytes.h"
+#include "files/file_name.h"
+#include "ingest/dense/dense_source.h"
+#include "ingest/readers.h"
 
 namespace deltasplat {
+
 namespace {
 
 std::string expectedSize(const RawFile& file) {
@@ -112,6 +115,22 @@ DenseSource denseSourceOf(const RawFile& file) {
     if (!file.isPacked())
         source.rows = std::make_shared<const StoredRows>(bytes, file.start(), source.rowBytes(),
                                                          source.dims.y);
+    return source;
+}
+
+DenseSource openRaw(const std::filesystem::path& path, const RawFormat& format) {
+    RawFile file{path, resolveRawLayout(path, format)};
+    requireRegularFile(path);
+    // What it begins with tells, but that values may begin as gzip does, and a packed file be cut
+    // or damaged: then name and size do.
+    const bool named = lowerExtension(path) == ".raw.gz";
+    const std::uint64_t plain = file.layout.skipBytes + file.layout.dataBytes();
+    const bool fits = std::filesystem::file_size(path) == plain;
+    file.packing = named != fits ? (named ? Packing::kGzip : Packing::kNone) : packingOf(path);
+    requireRawSize(file);
+    DenseSource source = denseSourceOf(file);
+    source.worldFromIndex = glm::scale(glm::translate(glm::dmat4(1), format.origin),
+                                       format.spacing.value_or(glm::dvec3(1)));
     return source;
 }
 

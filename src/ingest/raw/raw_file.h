@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <memory>
 
+#include "files/file_bytes.h"
 #include "ingest/dense/dense_source.h"
-#include "ingest/files/byte_source.h"
 
 namespace deltasplat {
 

@@ -7,11 +7,10 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "dims_text.h"
-#include "ingest/files/file_name.h"
+#include "files/file_name.h"
 #include "ingest/placement.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

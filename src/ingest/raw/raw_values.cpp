@@ -7,11 +7,11 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/parallel.h"
 #include "ingest/codes/code_math.h"
 #include "ingest/raw/raw_kernels.h"
 #include "ingest/raw/raw_load.h"
-#include "ingest/values/same_bits.h"
-#include "parallel.h"
+#include "ingest/values/value_cast.h"
 
 namespace deltasplat {
 namespace {

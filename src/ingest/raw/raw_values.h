@@ -8,9 +8,8 @@
 
 #include "deltasplat/ingest/code_book.h"
 #include "ingest/codes/book_encoder.h"
-#include "ingest/codes/error_meter.h"
 #include "ingest/raw/raw_format.h"
-#include "ingest/values/frequent_values.h"
+#include "ingest/values/distinct_values.h"
 #include "ingest/values/value_census.h"
 
 namespace deltasplat {

@@ -7,11 +7,10 @@
 #include <string_view>
 #include <utility>
 
-#include "ingest/files/refuse_file.h"
+#include "base/text.h"
+#include "files/file_name.h"
 #include "ingest/text_formats/text_header.h"
 #include "ingest/text_formats/text_volume.h"
-#include "lower_case.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {

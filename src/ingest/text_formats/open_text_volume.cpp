@@ -12,18 +12,15 @@
 #include <utility>
 #include <vector>
 
-#include "count_text.h"
+#include "base/memory.h"
+#include "base/text.h"
+#include "files/file_name.h"
 #include "ingest/choose_volume.h"
 #include "ingest/dense/dense_source.h"
-#include "ingest/files/file_name.h"
-#include "ingest/files/refuse_file.h"
 #include "ingest/raw/raw_file.h"
 #include "ingest/raw/raw_load.h"
 #include "ingest/readers.h"
 #include "ingest/text_formats/text_volume.h"
-#include "memory.h"
-#include "number_text.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {

@@ -11,11 +11,10 @@
 #include <sstream>
 #include <string_view>
 
+#include "base/memory.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "ingest/files/byte_source.h"
-#include "lower_case.h"
-#include "memory.h"
-#include "printable.h"
+#include "files/file_bytes.h"
 
 namespace deltasplat {
 namespace {

@@ -6,11 +6,10 @@
 #include <sstream>
 #include <system_error>
 
-#include "ingest/files/refuse_file.h"
+#include "base/text.h"
+#include "files/file_name.h"
+#include "ingest/length_unit.h"
 #include "ingest/text_formats/text_header.h"
-#include "length_unit.h"
-#include "lower_case.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {

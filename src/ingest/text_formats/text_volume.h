@@ -11,8 +11,8 @@
 
 #include "deltasplat/ingest/label_list.h"
 #include "deltasplat/progress.h"
+#include "files/file_bytes.h"
 #include "ingest/dense/rescale.h"
-#include "ingest/files/byte_source.h"
 #include "ingest/raw/raw_format.h"
 
 namespace deltasplat {

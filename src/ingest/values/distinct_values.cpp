@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "ingest/values/hash_place.h"
-
 namespace deltasplat {
 
 void DistinctValues::insert(std::uint64_t bits) {

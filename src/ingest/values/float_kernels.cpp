@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "simd_targets.h"
+#include "base/simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ingest/values/float_kernels.cpp"

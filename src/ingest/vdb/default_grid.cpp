@@ -5,11 +5,17 @@
 #include <array>
 #include <string_view>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
+#include "deltasplat/ingest/list_grids.h"
+#include "files/file_name.h"
+#include "ingest/delta/delta_format.h"
 #include "ingest/grids/grid_metadata.h"
-#include "lower_case.h"
+#include "ingest/input_files.h"
+#include "ingest/vdb/vdb_file.h"
 
 namespace deltasplat {
+
 namespace {
 
 // As caches of smoke and fire simulations (Mantaflow, Houdini) call them.
@@ -78,6 +84,64 @@ const VdbGrid* toldDefaultGrid(const VdbFile& file) {
     } catch (const Error&) {
         return nullptr;
     }
+}
+
+namespace {
+
+// As caches of Houdini, Mantaflow, EmberGen and others call them, those first that say most of
+// where it burns.
+constexpr std::array<std::string_view, 6> kFires{"flame", "flames", "fire",
+                                                 "burn",  "heat",   "temperature"};
+constexpr std::array<std::string_view, 4> kColors{"cd", "color", "colour", "albedo"};
+
+}  // namespace
+
+bool isColorType(const std::string& type) {
+    return type == "vec3s" || type == "vec3d";
+}
+
+MediumGrids mediumGrids(const std::vector<VolumeEntry>& entries) {
+    const auto firstOf = [&](const auto& names, const auto& suits) -> std::string {
+        for (const std::string_view name : names) {
+            for (const VolumeEntry& entry : entries)
+                if (suits(entry) && lowerCase(entry.name) == name) return entry.name;
+        }
+        return "";
+    };
+    MediumGrids grids;
+    // One that cannot be read is the one that is meant all the same, and reading it says why.
+    grids.emission = firstOf(
+        kFires, [](const VolumeEntry& entry) { return entry.scalar || !entry.obstacle.empty(); });
+    grids.color =
+        firstOf(kColors, [](const VolumeEntry& entry) { return isColorType(entry.type); });
+    grids.otherEmission = firstOf(kFires, [&](const VolumeEntry& entry) {
+        const bool isEmpty = entry.box && entry.box->empty();
+        return entry.scalar && !isEmpty && entry.name != grids.emission;
+    });
+    return grids;
+}
+
+GridList listGrids(const std::filesystem::path& file) {
+    requireRegularFile(file);
+    if (inputsAreConfined()) requireConfined(file);
+    GridList list;
+    const VdbFile vdb(file);
+    const VdbGrid* const preferred = toldDefaultGrid(vdb);
+    if (preferred && preferred->isScalar()) list.preferred = preferred->name;
+    for (const VdbGrid& grid : vdb.grids()) {
+        if (grid.isScalar()) {
+            list.scalar.push_back(grid.name);
+        } else {
+            list.others.push_back(grid.describe());
+        }
+        const bool mayBeDelta = grid.type == "int32" || grid.type == "int64";
+        if (mayBeDelta && isDeltaGrid(grid.type, vdb.metadata(grid))) {
+            list.deltas.push_back(grid.name);
+        } else {
+            list.ordinary.push_back(grid.describe());
+        }
+    }
+    return list;
 }
 
 }  // namespace deltasplat

@@ -6,15 +6,23 @@
 #include <blosc.h>
 #include <openvdb/Types.h>
 #include <openvdb/io/Compression.h>
+#include <zlib.h>
 
 #include <array>
 #include <bit>
 #include <cstring>
 #include <type_traits>
 
-#include "ingest/vdb/zip_chunk.h"
-
 namespace deltasplat {
+
+bool unpackZip(std::span<const char> chunk, std::span<char> values, std::size_t size) {
+    uLongf unpacked = values.size();
+    const int status =
+        ::uncompress(reinterpret_cast<Bytef*>(values.data()), &unpacked,
+                     reinterpret_cast<const Bytef*>(chunk.data()), uLong(chunk.size()));
+    return status == Z_OK && unpacked == size;
+}
+
 namespace {
 
 // Takes what is stored from the front of some bytes.

@@ -15,6 +15,11 @@
 
 namespace deltasplat {
 
+/// Unpacks what zlib has packed; returns whether it is whole, by its checksum, and `size` bytes.
+/// OpenVDB 10 asks for the size alone.
+/// @param values  takes as many at least
+bool unpackZip(std::span<const char> chunk, std::span<char> values, std::size_t size);
+
 /// What unpacking takes behind what is unpacked: OpenVDB 10 asks for 16.
 inline constexpr std::size_t kUnpackBytes = 64;
 

@@ -6,26 +6,25 @@
 #include <utility>
 #include <variant>
 
-#include "default_floats.h"
+#include "base/default_floats.h"
+#include "base/progress.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "ingest/delta/delta_format.h"
 #include "ingest/delta/read_delta_grid.h"
-#include "ingest/files/input_files.h"
-#include "ingest/files/input_kind.h"
 #include "ingest/grids/grid_errors.h"
 #include "ingest/grids/grid_metadata.h"
 #include "ingest/grids/grid_volume.h"
-#include "ingest/grids/source_grid.h"
+#include "ingest/grids/tree_grid.h"
 #include "ingest/grids/tree_types.h"
+#include "ingest/input_files.h"
+#include "ingest/input_kind.h"
 #include "ingest/readers.h"
 #include "ingest/vdb/default_grid.h"
 #include "ingest/vdb/packed_grid.h"
 #include "ingest/vdb/vdb_file.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "ingest/vdb/vector_part.h"
-#include "listener_part.h"
-#include "name_list.h"
-#include "suggest.h"
 
 namespace deltasplat {
 namespace {

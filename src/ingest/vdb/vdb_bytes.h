@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "ingest/files/file_bytes.h"
+#include "files/file_bytes.h"
 
 namespace deltasplat {
 

@@ -15,17 +15,17 @@
 #include <string_view>
 #include <utility>
 
+#include "base/memory.h"
+#include "base/text.h"
 #include "deltasplat/error.h"
-#include "ingest/files/file_bytes.h"
+#include "files/file_bytes.h"
 #include "ingest/grids/grid_errors.h"
-#include "ingest/vdb/leaf_sizes.h"
 #include "ingest/vdb/packed_values.h"
 #include "ingest/vdb/vdb_bytes.h"
+#include "ingest/vdb/vdb_leaves.h"
 #include "ingest/vdb/vdb_transform.h"
 #include "ingest/vdb/vdb_tree.h"
 #include "ingest/vdb/vdb_walk.h"
-#include "memory.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {

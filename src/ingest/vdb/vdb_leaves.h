@@ -10,9 +10,10 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "ingest/files/file_bytes.h"
+#include "files/file_bytes.h"
 #include "ingest/vdb/vdb_walk.h"
 
 namespace deltasplat {
@@ -101,5 +102,16 @@ class VdbLeaves {
     VdbValueFormat format_;
     openvdb::math::MapBase::ConstPtr transform_;
 };
+
+/// Returns the most bytes that a note of so many leaves may have: packing may add a little.
+constexpr std::uint64_t mostLeafSizesBytes(std::size_t leaves) {
+    return 64 + 9 * std::uint64_t{leaves};
+}
+
+/// Returns how many bytes each leaf of a grid has in its file behind its mask, in file order, if
+/// that is noted for as many leaves as there are, and soundly. A note may be wrong.
+/// @param stored  value of the grid's metadata "file_delayed_load" as the file has it
+std::optional<std::vector<std::uint64_t>> leafSizesOf(const std::string& stored, std::size_t leaves,
+                                                      const VdbValueFormat& format);
 
 }  // namespace deltasplat

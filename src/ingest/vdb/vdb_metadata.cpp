@@ -11,9 +11,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "ingest/grids/tree_types.h"
-#include "printable.h"
 
 namespace deltasplat {
 namespace {

@@ -8,8 +8,8 @@
 #include <bit>
 #include <cstring>
 
+#include "base/parallel.h"
 #include "ingest/vdb/packed_values.h"
-#include "parallel.h"
 
 namespace deltasplat {
 namespace {

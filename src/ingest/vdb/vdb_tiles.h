@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "files/file_bytes.h"
 #include "ingest/codes/code_nodes.h"
-#include "ingest/files/file_bytes.h"
 #include "ingest/vdb/vdb_walk.h"
 
 namespace deltasplat {

@@ -12,10 +12,10 @@
 #include <memory>
 #include <sstream>
 
+#include "base/text.h"
 #include "deltasplat/error.h"
 #include "ingest/grids/grid_errors.h"
 #include "ingest/grids/tree_types.h"
-#include "number_text.h"
 
 namespace deltasplat {
 namespace {

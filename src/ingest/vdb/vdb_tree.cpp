@@ -7,11 +7,11 @@
 #include <map>
 #include <type_traits>
 
-#include "heap_growth.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/progress.h"
 #include "ingest/grids/tree_grid.h"
 #include "ingest/vdb/packed_values.h"
-#include "parallel.h"
-#include "shared_progress.h"
 
 namespace deltasplat {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "deltasplat/progress.h"
-#include "ingest/files/file_bytes.h"
+#include "files/file_bytes.h"
 #include "ingest/grids/tree_types.h"
 #include "ingest/vdb/vdb_leaves.h"
 #include "ingest/vdb/vdb_walk.h"

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "ingest/vdb/zip_chunk.h"
+#include "ingest/vdb/packed_values.h"
 
 namespace deltasplat {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <openvdb/tree/LeafManager.h>
 
+#include "base/parallel.h"
 #include "ingest/grids/tree_types.h"
-#include "parallel.h"
 
 namespace deltasplat {
 namespace {

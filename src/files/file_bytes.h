@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace deltasplat {
+
+/// The bytes of a regular file, in any order. Several threads may read at once.
+class FileBytes {
+  public:
+    /// @throw Error(kInput) if the file is missing, not regular or cannot be opened
+    explicit FileBytes(const std::filesystem::path& file);
+    /// Returns the bytes that a file holds under gzip, in memory.
+    /// @throw Error(kInput) if it is no sound gzip; Error(kFailed) if they do not fit into memory
+    static std::shared_ptr<const FileBytes> unpacked(const std::filesystem::path& file);
+    /// Returns the bytes of a file, or if it begins as gzip does those that it holds.
+    static std::shared_ptr<const FileBytes> plain(const std::filesystem::path& file);
+    ~FileBytes();
+    FileBytes(const FileBytes&) = delete;
+    FileBytes& operator=(const FileBytes&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+    std::uint64_t size() const { return size_; }
+    /// Reads `bytes` bytes from `place` on; returns how many there were.
+    /// @throw Error(kInput) if they cannot be read
+    std::size_t read(std::uint64_t place, void* to, std::size_t bytes) const;
+    /// Does the same on all threads.
+    std::size_t readInParts(std::uint64_t place, void* to, std::size_t bytes) const;
+    /// @throw Error(kInput) if the file was written to after it was opened
+    void requireUnchanged() const;
+    /// Says so.
+    [[noreturn]] void throwChanged() const;
+
+  private:
+    // Its size, and when it was last written to, in seconds and nanoseconds.
+    using State = std::array<std::int64_t, 3>;
+    std::optional<State> state() const;
+
+    std::filesystem::path path_;
+    int handle_ = -1;
+    std::uint64_t size_ = 0;
+    std::optional<State> opened_;            // state() when it was opened
+    std::optional<std::vector<char>> held_;  // in place of the file's own bytes
+};
+
+class Unpacker;
+
+/// How the bytes of a file are packed.
+enum class Packing {
+    kNone,
+    kGzip,  ///< one gzip member or several, up to the end of the file, zeros aside
+    kZlib   ///< one zlib or gzip stream; what follows it is nobody's
+};
+
+/// Returns kGzip for a file that begins as gzip does, whatever its name; kNone for others.
+/// @param start  place in the file to look at
+/// @throw Error(kInput) if the file is missing, not regular or cannot be opened
+Packing packingOf(const std::filesystem::path& file, std::uint64_t start = 0);
+
+/// The bytes of a plain or a packed file, front to back.
+class ByteSource {
+  public:
+    /// @param start  place in the file of the first byte, plain or packed
+    /// @throw Error(kInput) if the file is missing, not regular or cannot be opened
+    ByteSource(const std::filesystem::path& file, Packing packing, std::uint64_t start = 0);
+    /// The same of a file that is open.
+    explicit ByteSource(std::shared_ptr<const FileBytes> file, std::uint64_t start = 0,
+                        Packing packing = Packing::kNone);
+    ~ByteSource();
+    ByteSource(const ByteSource&) = delete;
+    ByteSource& operator=(const ByteSource&) = delete;
+
+    /// Reads the next `bytes` bytes, fewer only at the end; returns how many. Packed bytes are
+    /// known to be whole, by their count and checksum, once there were fewer.
+    /// @throw Error(kInput) if the file cannot be read, or is corrupt, cut short, or goes on behind
+    ///        what is packed
+    std::size_t read(void* to, std::size_t bytes);
+    /// Passes over up to `bytes` bytes, calling `step` now and then; returns how many there were.
+    /// @throw as read, and what `step` throws
+    std::uint64_t skip(std::uint64_t bytes, const std::function<void()>& step);
+
+  private:
+    std::shared_ptr<const FileBytes> file_;
+    std::uint64_t place_;
+    std::unique_ptr<Unpacker> unpacker_;  // if packed
+};
+
+/// The rows of a volume that lie in a file one after the other, slice by slice.
+class StoredRows {
+  public:
+    /// @param start        place in the file of the first one
+    /// @param rowsOfSlice  how many make a slice
+    StoredRows(std::shared_ptr<const FileBytes> file, std::uint64_t start, std::size_t rowBytes,
+               std::int64_t rowsOfSlice)
+        : file_(std::move(file)), start_(start), rowBytes_(rowBytes), rowsOfSlice_(rowsOfSlice) {}
+
+    /// Reads some rows of a slice. From any thread.
+    /// @throw Error(kInput) if the file has become shorter
+    void read(int slice, int firstRow, int rows, std::byte* to) const {
+        const auto row = std::uint64_t(std::int64_t{slice} * rowsOfSlice_ + firstRow);
+        const std::size_t wanted = std::size_t(rows) * rowBytes_;
+        if (file_->read(start_ + row * rowBytes_, to, wanted) != wanted) file_->throwChanged();
+    }
+    /// @throw Error(kInput) if the file was written to after it was opened
+    void requireUnchanged() const { file_->requireUnchanged(); }
+
+  private:
+    std::shared_ptr<const FileBytes> file_;
+    std::uint64_t start_;
+    std::size_t rowBytes_;
+    std::int64_t rowsOfSlice_;
+};
+
+}  // namespace deltasplat

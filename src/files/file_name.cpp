@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "files/file_name.h"
+
+#include <system_error>
+
+#include "base/text.h"
+#include "deltasplat/error.h"
+
+namespace deltasplat {
+
+std::string lowerExtension(const std::filesystem::path& file) {
+    std::string last = lowerCase(file.extension().string());
+    if (last != ".gz") return last;
+    return lowerCase(file.stem().extension().string()) + last;
+}
+
+bool isVdbName(const std::filesystem::path& file) {
+    const std::string extension = lowerExtension(file);
+    return extension == ".vdb" || extension == ".vdb.gz";
+}
+
+std::string nameWithoutExtensions(const std::filesystem::path& file) {
+    const std::string name = file.filename().string();
+    return name.substr(0, name.size() - lowerExtension(file).size());
+}
+
+std::string folderName(const std::filesystem::path& folder) {
+    std::error_code error;
+    const std::filesystem::path path = std::filesystem::weakly_canonical(folder, error);
+    return path.has_filename() ? path.filename().string() : path.parent_path().filename().string();
+}
+
+void requireRegularFile(const std::filesystem::path& file) {
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    const std::string expected = "a readable file";
+    if (error && !std::filesystem::exists(status) &&
+        status.type() != std::filesystem::file_type::not_found) {
+        throw Error(
+            ErrorCode::kInput,
+            gotExpected(file.string(), "a file that cannot be opened (" + error.message() + ")",
+                        expected));
+    }
+    if (!std::filesystem::exists(status)) {
+        throw Error(ErrorCode::kInput, gotExpected(file.string(), "no such file", expected));
+    }
+    if (!std::filesystem::is_regular_file(status)) {
+        const bool folder = std::filesystem::is_directory(status);
+        throw Error(ErrorCode::kInput,
+                    gotExpected(file.string(), folder ? "a folder" : "no regular file", expected));
+    }
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/extras/render_deep.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "base/affine.h"
+#include "base/default_floats.h"
+#include "base/kept_memory.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "base/text.h"
+#include "deltasplat/error.h"
+#include "deltasplat/render_deep.h"
+#include "image/clear_image.h"
+#include "image/deep_builder.h"
+#include "picture/picture_view.h"
+#include "picture/prepared_axis.h"
+
+namespace deltasplat {
+
+namespace {
+
+// Which sample a slice belongs to, wherever slabs begin.
+class SampleNumbers {
+  public:
+    SampleNumbers(const Subdivision& parts, int slicesPerSample)
+        : origin_(std::int64_t{parts.origin.x} * parts.slices),
+          length_(std::max<std::int64_t>(std::int64_t{slicesPerSample} * parts.slices, 1)) {}
+
+    std::int64_t of(int slice) const {
+        const std::int64_t place = slice + origin_;
+        return place / length_ - (place % length_ < 0);
+    }
+    // The last slice of the same sample, towards larger or smaller ones.
+    std::int64_t last(int slice, bool towardsLarger) const {
+        const std::int64_t first = of(slice) * length_ - origin_;
+        return towardsLarger ? first + length_ - 1 : first;
+    }
+
+  private:
+    std::int64_t origin_;
+    std::int64_t length_;
+};
+
+void addPiece(const SeenSlab& piece, bool continues, std::vector<DeepCut>& cuts) {
+    if (!continues) cuts.push_back({piece.firstSlice, piece.lastSlice, {}});
+    DeepCut& cut = cuts.back();
+    cut.firstSlice = std::min(cut.firstSlice, piece.firstSlice);
+    cut.lastSlice = std::max(cut.lastSlice, piece.lastSlice);
+    cut.slabs.push_back(piece);
+}
+
+void mergeBehind(Layer& front, const Layer& layer) {
+    parallelForChunks(std::size_t(layer.box.size().y), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row)
+            mergeRowBehind(front, layer, layer.box.min.y + int(row));
+    });
+}
+
+// Where a slice begins, in undivided slices: the same number for all parts of a volume.
+double faceBefore(int slice, const Subdivision& parts) {
+    return parts.origin.x + double(slice) / parts.slices - 0.5;
+}
+
+}  // namespace
+
+std::vector<DeepCut> cutInDepth(const std::vector<SeenSlab>& seen, bool frontToBack,
+                                const Subdivision& parts, int slicesPerSample) {
+    const SampleNumbers numbers(parts, slicesPerSample);
+    std::vector<DeepCut> cuts;
+    for (const SeenSlab& slab : seen) {
+        int slice = frontToBack ? slab.firstSlice : slab.lastSlice;
+        while (slice >= slab.firstSlice && slice <= slab.lastSlice) {
+            const int last = int(std::clamp<std::int64_t>(numbers.last(slice, frontToBack),
+                                                          slab.firstSlice, slab.lastSlice));
+            const bool continues =
+                !cuts.empty() && numbers.of(cuts.back().firstSlice) == numbers.of(slice);
+            addPiece({slab.slab, std::min(slice, last), std::max(slice, last)}, continues, cuts);
+            slice = frontToBack ? last + 1 : last - 1;
+        }
+    }
+    return cuts;
+}
+
+DeepViewResult renderDeepView(const PictureView& picture, int slicesPerSample, KeptMemory& memory,
+                              DeepStages& stages, Image& flat, const Listener& listener) {
+    const SlabInput& input = picture.slabs();
+    const Subdivision& parts = picture.axis().parts;
+    const bool frontToBack = input.plane.frontToBack();
+    const std::vector<SeenSlab> seen = seenSlabs(input);
+    const std::vector<DeepCut> cuts = cutInDepth(seen, frontToBack, parts, slicesPerSample);
+    const PlaneBox reach = reachOfAll(input, seen);
+    // What is shown may have to be changed for that.
+    const double layers = picture.showChangesLayer() ? 2 : 1;
+    requireMemory("layers of a deep picture", layers * layerBytes(reach, input.layout.channels));
+    Layer merged(reach, input.layout.channels, memory);
+    stages.begin(std::make_shared<const SliceDepths>(picture.camera(), picture.worldFromSlices()));
+    DeepViewResult result{1, 0, 0, 0};
+    double compositeSeconds = 0;
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+        const DeepCut& cut = cuts[i];
+        const double share = double(i) / double(cuts.size());
+        const double next = double(i + 1) / double(cuts.size());
+        const Clock::time_point start = Clock::now();
+        const Listener rendering = partOf(listener, share, next);
+        SlabRenderer slabs(input, cut.slabs, rendering);
+        slabs.run();
+        mergeBehind(merged, slabs.merge());
+        const double slabSeconds = secondsSince(start);
+        result.slabSeconds += slabSeconds;
+        compositeSeconds += slabSeconds * slabs.compositeShare();
+        const Clock::time_point warpStart = Clock::now();
+        if (picture.showChangesLayer()) {
+            Layer shown = merged;
+            result.gain = std::max(result.gain, picture.show(shown, PicturePart(flat)));
+        } else {
+            result.gain = std::max(result.gain, picture.show(merged, PicturePart(flat)));
+        }
+        const double first = faceBefore(cut.firstSlice, parts);
+        const double last = faceBefore(cut.lastSlice + 1, parts);
+        stages.add(flat, frontToBack ? first : last, frontToBack ? last : first);
+        result.warpSeconds += secondsSince(warpStart);
+    }
+    if (result.slabSeconds > 0) result.compositeShare = compositeSeconds / result.slabSeconds;
+    return result;
+}
+
+namespace {
+
+// The flat picture, and what it was before.
+constexpr double kBytesPerPixel = 32;
+
+void checkSlices(int slices) {
+    if (slices >= 1 && slices <= kMostSlicesPerSample) return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected("`slicesPerSample`", std::to_string(slices),
+                            "a whole number within 1.." + std::to_string(kMostSlicesPerSample)));
+}
+
+std::string shortText(double number) {
+    char text[32];
+    return {text,
+            std::to_chars(text, text + sizeof text, number, std::chars_format::general, 6).ptr};
+}
+
+// From an eye, what lies behind it is not seen. Depths of a parallel picture begin at its camera,
+// which may be anywhere.
+void requireBefore(const Camera& camera, const Volume& volume) {
+    if (camera.projection != Projection::kOrtho || volume.empty()) return;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 index(cornerOf(volume.box, corner), 1);
+        const glm::dvec3 away = glm::dvec3(volume.worldFromIndex * index) - camera.eyeWorld();
+        nearest = std::min(nearest, glm::dot(away, camera.direction));
+    }
+    // Of a voxel there is half before its middle.
+    for (int axis = 0; axis < 3; ++axis) {
+        const glm::dvec3 step(volume.worldFromIndex[axis]);
+        nearest -= 0.5 * std::abs(glm::dot(step, camera.direction));
+    }
+    // Six digits of what is enough are enough.
+    constexpr double kRounding = 1e-5;
+    if (nearest >= -kRounding * std::abs(camera.targetDistanceWorld)) return;
+    throw Error(ErrorCode::kUsage,
+                gotExpected("`distanceWorld`", numberText(camera.targetDistanceWorld),
+                            "at least " + shortText(camera.targetDistanceWorld - nearest) +
+                                " for a deep picture, all of whose depths are beyond the camera"));
+}
+
+RenderStats renderSamples(const PreparedScene::Impl& scene, const Camera& camera,
+                          const DeepOptions& options, DeepImage& deep, Image& flat,
+                          const Listener& listener) {
+    DeepBuilder builder(camera.sizePixels, options.slicesPerSample);
+    const DeepRequest request{options.slicesPerSample, builder};
+    KeptMemory memory;
+    RenderStats stats = renderComposite(scene, camera, memory, flat, listener, &request);
+    const Clock::time_point start = Clock::now();
+    memory.endPicture();
+    deep = builder.finish();
+    const double seconds = secondsSince(start);
+    stats.warpSeconds += seconds;
+    stats.renderSeconds += seconds;
+    return stats;
+}
+
+}  // namespace
+
+RenderResult renderDeep(const Volume& volume, const RenderOptions& options,
+                        const DeepOptions& deepOptions, DeepImage& deep, const Listener& listener) {
+    const DefaultFloats floats;
+    checkSlices(deepOptions.slicesPerSample);
+    if (options.mode != Mode::kComposite) {
+        throw Error(ErrorCode::kUsage,
+                    gotExpected("`mode`", modeName(options.mode), "composite for a deep picture"));
+    }
+    RenderResult result;
+    const auto makePicture = [&](const Volume& seen) {
+        result.camera = makeCamera(options.camera, seen.box, seen.worldFromIndex, seen.space);
+        requireBefore(result.camera, seen);
+        const glm::ivec2 size = result.camera.sizePixels;
+        requireMemory("`sizePixels` " + dimsText(size), kBytesPerPixel * size.x * size.y);
+        result.image = Image(size);
+    };
+    // A camera that cannot be is refused before there is work.
+    if (options.optics.parts.empty()) makePicture(volume);
+    // The volume outlives the scene.
+    const std::shared_ptr<const Volume> borrowed(std::shared_ptr<const Volume>(), &volume);
+    const Clock::time_point start = Clock::now();
+    const PreparedScene::Impl scene({borrowed, options.optics}, options, true);
+    const double sceneSeconds = secondsSince(start);
+    if (!options.optics.parts.empty()) makePicture(*scene.scene.volume);
+    result.stats = renderSamples(scene, result.camera, deepOptions, deep, result.image, listener);
+    result.stats.prepareSeconds += sceneSeconds;
+    listener.report(1);
+    return result;
+}
+
+RenderStats renderDeep(const PreparedScene& scene, const Camera& camera,
+                       const DeepOptions& deepOptions, DeepImage& deep, Image& flat,
+                       const Listener& listener) {
+    const DefaultFloats floats;
+    checkSlices(deepOptions.slicesPerSample);
+    requireSize(camera, flat);
+    requireBefore(camera, *scene.scene().volume);
+    const glm::ivec2 size = camera.sizePixels;
+    requireMemory("`sizePixels` " + dimsText(size), 0.5 * kBytesPerPixel * size.x * size.y);
+    clearImage(flat);
+    return renderSamples(scene.impl(), camera, deepOptions, deep, flat, listener);
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deltasplat/render.h"
+
+#include <memory>
+#include <string>
+
+#include "base/default_floats.h"
+#include "base/memory.h"
+#include "base/progress.h"
+#include "base/text.h"
+#include "deltasplat/error.h"
+#include "image/clear_image.h"
+#include "ingest/box_voxels.h"
+#include "picture/prepared_axis.h"
+#include "picture/rays/ray_render.h"
+
+namespace deltasplat {
+namespace {
+
+// The picture itself, and what encoding it takes besides (measured: 41 bytes for a float .exr).
+constexpr double kBytesPerPixel = 48;
+
+void requireImageMemory(glm::ivec2 size) {
+    requireMemory("`sizePixels` " + dimsText(size), kBytesPerPixel * size.x * size.y);
+}
+
+}  // namespace
+
+std::string methodName(Method method) {
+    switch (method) {
+        case Method::kAuto:
+            return "auto";
+        case Method::kDelta:
+            return "delta";
+        case Method::kSparse:
+            return "sparse";
+        case Method::kTraditional:
+            return "traditional";
+    }
+    return "auto";
+}
+
+std::string pictureFilterName(PictureFilter filter) {
+    switch (filter) {
+        case PictureFilter::kCatmullRom:
+            return "catmull-rom";
+        case PictureFilter::kMitchell:
+            return "mitchell";
+        case PictureFilter::kGauss:
+            return "gauss";
+        case PictureFilter::kBox:
+            return "box";
+    }
+    return "catmull-rom";
+}
+
+std::string modeName(Mode mode) {
+    switch (mode) {
+        case Mode::kComposite:
+            return "composite";
+        case Mode::kXray:
+            return "xray";
+        case Mode::kMip:
+            return "mip";
+        case Mode::kMin:
+            return "min";
+        case Mode::kAverage:
+            return "average";
+        case Mode::kDrr:
+            return "drr";
+    }
+    return "composite";
+}
+
+RenderResult render(const Volume& volume, const RenderOptions& options, const Listener& listener) {
+    const DefaultFloats floats;
+    RenderResult result;
+    const auto makePicture = [&](const Volume& seen) {
+        result.camera = makeCamera(options.camera, seen.box, seen.worldFromIndex, seen.space);
+        requireImageMemory(result.camera.sizePixels);
+        result.image = clearImage(result.camera.sizePixels);
+    };
+    RenderStats& stats = result.stats;
+    stats.voxels = voxelsOf(volume.box);
+    stats.mode = options.mode;
+    stats.method = options.method;
+    if (options.mode == Mode::kComposite) {
+        // A camera that cannot be is refused before there is work.
+        if (options.optics.parts.empty()) makePicture(volume);
+        // The volume outlives the scene.
+        const std::shared_ptr<const Volume> borrowed(std::shared_ptr<const Volume>(), &volume);
+        const Clock::time_point start = Clock::now();
+        const PreparedScene::Impl scene({borrowed, options.optics}, options, true);
+        const double sceneSeconds = secondsSince(start);
+        if (!options.optics.parts.empty()) makePicture(*scene.scene.volume);
+        KeptMemory memory;
+        stats = renderComposite(scene, result.camera, memory, result.image, listener);
+        stats.prepareSeconds += sceneSeconds;
+    } else {
+        makePicture(volume);
+        renderRays(volume, options, listener, result);
+    }
+    listener.report(1);
+    return result;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "deltasplat/ingest/slot.h"
+#include "deltasplat/view/factorization.h"
+
+namespace deltasplat {
+
+/// Directions this close are the same: rounding in a transform or an angle must neither choose the
+/// axis of a diagonal view, nor tilt a straight one, nor decide how one is drawn.
+inline constexpr double kSnap = 1e-9;
+
+/// Returns the axis that a direction is most parallel to, of several the last.
+inline int mostParallelAxis(const glm::dvec3& direction) {
+    const glm::dvec3 along = glm::abs(direction);
+    const double largest = std::max({along.x, along.y, along.z});
+    for (int axis = 2; axis > 0; --axis) {
+        if (along[axis] >= largest * (1 - kSnap)) return axis;
+    }
+    return 0;
+}
+
+/// Returns where voxels lie as slices count them, in the index space of a volume's own: from
+/// (slice, u, v), of what is divided its parts, to (x, y, z). Not of joined slices.
+inline glm::dmat4 indexFromThinVoxel(int sliceAxis, const Subdivision& parts) {
+    const glm::ivec3 order = sliceOrder(sliceAxis);
+    const glm::dvec3 per(parts.slices, parts.within, parts.within);
+    glm::dmat4 indexFromThin(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        indexFromThin[axis][order[axis]] = 1 / per[axis];
+        indexFromThin[3][order[axis]] = parts.origin[axis] + 0.5 / per[axis] - 0.5;
+    }
+    indexFromThin[3][3] = 1;
+    return indexFromThin;
+}
+
+}  // namespace deltasplat
