@@ -147,12 +147,6 @@ void addOptions(Scenes& scenes) {
                  colored())
             .resolution = resolution;
     }
-    for (const int voxels : {2, 4, 8}) {
-        scenes
-            .add("resolution-1-of-" + std::to_string(voxels), "shepp-logan", turned(-25, 12),
-                 colored())
-            .resolution = 1.0 / voxels;
-    }
     scenes.add("tolerance", "noisy", turned(35, 20), colored()).tolerance.relative = 0.1;
     scenes.add("tolerance-value", "noisy", turned(35, 20), colored()).tolerance.value = 4;
     scenes.add("extinction", "noisy", turned(35, 20), oneColor(0.05)).optics.extinctionScale = 7;

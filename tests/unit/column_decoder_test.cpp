@@ -68,7 +68,7 @@ Decoded decode(const Changes& changes, const SeenCodes& seen, int keyInterval = 
     header.box = {{0, 0, 0}, {8 * kBlocks - 4, 7, 7}};
     header.codeCount = 10;
     header.active = ~std::uint64_t{0};
-    const BlockLayout layout(header, std::nullopt);
+    const BlockLayout layout(header);
     const std::string where = "a column";
     ColumnDecoder decoder(std::make_unique<Walker>(changes),
                           {header, layout, slotRulesOf(header), where, &seen}, nullptr, 0);
@@ -127,7 +127,7 @@ TEST(ColumnDecoder, RefusesMoreVoxelsThanThereAre) {
     header.box = {{0, 0, 0}, {8 * kBlocks - 1, 7, 7}};
     header.codeCount = 10;
     header.active = 512ull * kBlocks - 1;
-    const BlockLayout layout(header, std::nullopt);
+    const BlockLayout layout(header);
     const std::string where = "a column";
     const SeenCodes seen = onlySeen(7);
     ColumnDecoder decoder(std::make_unique<Walker>(Changes{{0, {4}}}),
