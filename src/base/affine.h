@@ -13,8 +13,8 @@
 
 namespace deltasplat {
 
-/// Throws unless the transform maps three-dimensional space onto itself one to one.
-/// @throw Error(kInput) if an entry is not finite or the voxels have no volume
+/// Refuses a transform that cannot be inverted.
+/// @throw Error(kInput) if an entry is not finite or voxels have no volume
 void requireInvertible(const glm::dmat4& worldFromIndex);
 
 /// Returns a corner of a box, the centre of a voxel.
@@ -24,19 +24,19 @@ inline glm::dvec3 cornerOf(const IndexBox& box, int number) {
             number & 4 ? box.max.z : box.min.z};
 }
 
-/// Returns the smallest box that holds two, either of which may be empty.
+/// Returns the smallest box that holds two boxes. Either may be empty.
 inline IndexBox boxOfBoth(const IndexBox& a, const IndexBox& b) {
     if (a.empty()) return b;
     if (b.empty()) return a;
     return {glm::min(a.min, b.min), glm::max(a.max, b.max)};
 }
 
-/// Returns the smallest that holds the centres of all voxels of a box, or, of an empty one, of
-/// voxel (0, 0, 0).
+/// Returns the smallest box in the world that holds the centres of all voxels of a box; for an
+/// empty box, the centre of voxel (0, 0, 0).
 WorldBox worldBox(const IndexBox& box, const glm::dmat4& worldFromIndex);
 
-/// Returns a vector's direction, of length 1. Its square may be too large or too small for a
-/// number.
+/// Returns a vector's direction, of length 1, even where the vector's square is too large or too
+/// small for a number.
 /// @param v  finite, not 0
 inline glm::dvec3 unitVectorOf(const glm::dvec3& v) {
     const glm::dvec3 size = glm::abs(v);

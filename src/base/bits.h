@@ -28,9 +28,9 @@ inline std::uint64_t transposedBits(std::uint64_t bits) {
     return bits;
 }
 
-/// Returns bit i for each row of such a matrix, bits 8 * i + j, in which any bit is set.
+/// Returns which rows of a matrix of 8x8 bits have any bit set: bit i for row i, bits 8 * i + j.
 inline std::uint8_t rowsWithAny(std::uint64_t bits) {
-    // Into the highest bit of each byte whether it is not zero, then the eight together.
+    // The highest bit of each byte says whether the byte is not zero; then the eight move together.
     constexpr std::uint64_t kLow = 0x7F7F7F7F7F7F7F7F;
     const std::uint64_t any = (((bits & kLow) + kLow) | bits) & ~kLow;
     return std::uint8_t((any >> 7) * 0x0102040810204080 >> 56);

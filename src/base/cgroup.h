@@ -6,15 +6,14 @@
 
 namespace deltasplat {
 
-/// Returns the bytes of memory that the cgroups which this process is in, each within the next,
-/// leave it: the least of all limits, less what is in use there and is no page cache, which makes
-/// room by itself. Both versions of cgroups, wherever they are mounted. The largest number if there
-/// is no limit.
-/// @param root  "/", or where a test keeps what stands there
+/// Returns the bytes of memory that the cgroups of this process leave it: the least of all limits,
+/// less the memory in use there. Page cache does not count, because it makes room by itself. Reads
+/// both versions of cgroups, wherever they are mounted. Without a limit: the largest number.
+/// @param root  "/", or a test's folder with the same files
 std::uint64_t cgroupAvailable(const std::filesystem::path& root);
 
-/// Returns how many processors' time those cgroups leave the process, rounded up: the least of all
-/// limits. The largest number if there is no limit.
+/// Returns the number of processors whose time these cgroups leave the process, rounded up. Without
+/// a limit: the largest number.
 int cgroupProcessors(const std::filesystem::path& root);
 
 }  // namespace deltasplat

@@ -3,9 +3,9 @@
 
 namespace deltasplat {
 
-/// While one lives, what any thread gets from malloc is zero: for libraries that hand on memory
-/// which a damaged file leaves unwritten, so that the same file always gives the same voxels. Only
-/// with the GNU C library; elsewhere it does nothing.
+/// While an object lives, malloc clears the memory that it returns, for all threads. Meant for
+/// libraries that hand on memory which a damaged file leaves unwritten, so that one file always
+/// gives the same voxels. Works with the GNU C library; elsewhere it does nothing.
 class ClearedMemory {
   public:
     ClearedMemory();
@@ -13,8 +13,8 @@ class ClearedMemory {
     ClearedMemory(const ClearedMemory&) = delete;
     ClearedMemory& operator=(const ClearedMemory&) = delete;
 
-    /// Whether one lives, or the environment has malloc write to all memory (MALLOC_PERTURB_): then
-    /// no more should be taken than is used.
+    /// Whether malloc writes to all memory that it returns, because an object lives or because of
+    /// MALLOC_PERTURB_. Then allocate no more than you use.
     static bool isWritten();
 };
 

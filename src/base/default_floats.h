@@ -5,9 +5,9 @@
 
 namespace deltasplat {
 
-/// While one of these lives, the thread rounds to nearest, keeps denormals and traps nothing,
-/// whatever its caller has set; that is put back at the end. Every function of the library that
-/// makes numbers for pixels or files has one, and so has every piece of parallel work.
+/// While an object lives, its thread rounds to nearest, keeps denormals and traps nothing, whatever
+/// the caller has set; the caller's state comes back at the end. Every function of the library that
+/// makes numbers for pixels or files holds one, and so does every piece of parallel work.
 class DefaultFloats {
   public:
     DefaultFloats() {

@@ -7,15 +7,15 @@
 
 namespace deltasplat {
 
-/// Runs `work` in a child process, so that what ends the process ends only that: for libraries that
-/// do so at foreign bytes. The child prints nothing, has one minute of processor time, no more
-/// memory than is left to this process (nor than 64 times what it writes, and a GiB), no thread but
-/// its own and no signal handlers, and ends with the thread that called this.
+/// Runs `work` in a child process, so that a library that aborts at foreign bytes ends the child
+/// alone. The child prints nothing. It has one minute of processor time, the memory that is left to
+/// this process but at most 64 times `bytes` and a GiB, one thread and no signal handlers. It ends
+/// with the thread that called this.
 /// @param work  writes `bytes` bytes to its argument; returns false, or throws, if it cannot
-/// @param to    what it wrote
-/// @param why   if not null: what the exception says that ended the work, or the child by
-///              std::terminate (at most some kilobytes of it); empty if none did
-/// @return whether it was done
+/// @param to    receives these bytes
+/// @param why   if not null: receives the text of the exception that ended the work, at most some
+///              kilobytes; empty if there was none
+/// @return whether the work was done
 /// @throw Error(kFailed) if there can be no child, or if somebody ended it
 bool inChild(std::size_t bytes, const std::function<bool(std::byte*)>& work, std::byte* to,
              std::string* why = nullptr);

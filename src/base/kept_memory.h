@@ -8,9 +8,9 @@
 
 namespace deltasplat {
 
-/// Memory for what every picture takes anew: sheets, layers. Large blocks that are given back are
-/// kept for the next who asks, so that the system need not clear them again; never more is held
-/// than was in use at one time. Thread-safe.
+/// Memory for sheets and layers, which every picture allocates anew. Large blocks that are freed
+/// stay here for the next picture, so that the system need not clear them again. The pool never
+/// holds more than was in use at one time. Thread-safe.
 class KeptMemory : public std::pmr::memory_resource {
   public:
     KeptMemory() = default;
@@ -18,11 +18,11 @@ class KeptMemory : public std::pmr::memory_resource {
     KeptMemory(const KeptMemory&) = delete;
     KeptMemory& operator=(const KeptMemory&) = delete;
 
-    /// Says that a picture is done: what it had no use for goes back to the system; where memory is
-    /// limited (setMemoryLimit) all does, for what is kept counts as taken.
+    /// Ends a picture: blocks that it did not use go back to the system. With a memory limit
+    /// (setMemoryLimit) all blocks do, because kept blocks count as taken.
     void endPicture();
-    /// Bytes that are kept for the next who asks. Who asks for more than that, in any sizes, makes
-    /// what is held grow by no more than the rest.
+    /// Bytes of the blocks that are kept. A caller that asks for more, in any sizes, makes the pool
+    /// grow by no more than the rest.
     std::size_t idleBytes() const;
 
   private:

@@ -16,15 +16,15 @@ inline double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Returns who is told of a part of the work, whose progress goes `from` a share `to` another.
-/// @param listener  must live as long
+/// Returns a listener for a part of the work. Its progress 0..1 is reported as `from`..`to`.
+/// @param listener  outlives the returned one
 inline Listener partOf(const Listener& listener, double from, double to) {
     return {[&listener, from, to](double share) { listener.report(from + (to - from) * share); },
             listener.warning};
 }
 
-/// Tells a listener how far several threads are: from one at a time, never falling. No thread waits
-/// for a listener that takes its time; what would be told meanwhile is left out.
+/// Reports the progress of several threads to a listener: one call at a time, never falling. No
+/// thread waits for a slow listener; reports that come meanwhile are left out.
 class SharedProgress {
   public:
     explicit SharedProgress(const Listener& listener) : listener_(listener) {}
@@ -44,7 +44,7 @@ class SharedProgress {
     };
 
     const Listener& listener_;
-    // No mutex: a listener may ask the library for more, and this thread may then be told here.
+    // No mutex: a listener may call the library, and this thread may then report here again.
     std::atomic_flag telling_ = ATOMIC_FLAG_INIT;
     double told_ = 0;
 };

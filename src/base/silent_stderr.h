@@ -3,8 +3,8 @@
 
 namespace deltasplat {
 
-/// While one lives, what is written to standard error goes nowhere, by any thread. For libraries
-/// that print there and cannot be told not to.
+/// While an object lives, standard error goes nowhere, for all threads. Meant for libraries that
+/// print there and cannot be told not to.
 class SilentStderr {
   public:
     SilentStderr();

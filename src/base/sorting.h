@@ -13,12 +13,12 @@
 
 namespace deltasplat {
 
-/// Sorts as std::sort does, on all threads: items go to the buckets between some of them, and each
-/// bucket is sorted.
-/// @param isBefore  which of two items comes first; where it says of neither, either may
+/// Sorts as std::sort does, on all threads: samples of the items bound buckets, and each bucket is
+/// sorted by one thread.
+/// @param isBefore  which of two items comes first; of two equal items either may
 template <typename T, typename IsBefore>
 void parallelSort(std::vector<T>& items, const IsBefore& isBefore) {
-    // Of fewer items, all are sorted before a thread begins.
+    // Fewer items are sorted before a second thread has started.
     constexpr std::size_t kLeast = 8192;
     constexpr std::size_t kBuckets = 64;
     constexpr std::size_t kSamplesPerBucket = 16;
@@ -62,9 +62,9 @@ void parallelSort(std::vector<T>& items, const IsBefore& isBefore) {
     items = std::move(sorted);
 }
 
-/// Cuts a list into runs of neighbours that belong together, as blocks of one column do: returns
-/// where each run begins, and at the end the number of all.
-/// @param together  together(a, b): whether b, which follows a, is of its run
+/// Cuts a list into runs of neighbours that belong together, such as the blocks of a column.
+/// @param together  together(a, b): whether b, which follows a, belongs to the same run
+/// @return where each run begins, and last the number of items
 template <typename T, typename Together>
 std::vector<std::size_t> runBegins(const std::vector<T>& items, const Together& together) {
     std::vector<std::size_t> begins;

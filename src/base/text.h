@@ -13,13 +13,13 @@
 
 namespace deltasplat {
 
-/// Returns a count with words for one and for several: "1 voxel is", "2 voxels are".
+/// Returns a count and its words, of one or of several: "1 voxel is", "2 voxels are".
 inline std::string countText(std::uint64_t count, const std::string& one,
                              const std::string& several) {
     return std::to_string(count) + " " + (count == 1 ? one : several);
 }
 
-/// Likewise with a word of which several have an s more: "1 page", "2 pages".
+/// The same for a word whose plural ends with s: "1 page", "2 pages".
 inline std::string countText(std::uint64_t count, const std::string& one) {
     return countText(count, one, one + "s");
 }
@@ -56,21 +56,21 @@ inline std::string numberText(const glm::dvec3& v) {
     return numberText(glm::dvec2(v)) + "," + numberText(v.z);
 }
 
-/// Returns foreign text fit for a message, which is one line of UTF-8: what controls a terminal or
-/// the order of text, is not seen, or is no UTF-8, is "?" (of bytes that are none, each).
+/// Returns foreign text fit for a message of one line of UTF-8. Characters that control a terminal
+/// or the order of text, or that nobody sees, become "?"; so does each byte that is no UTF-8.
 std::string printable(const std::string& text);
 
-/// Returns " Did you mean 'word'?" for the word most like `text` (the first of several), or nothing
-/// if none is near enough to be a slip of the finger.
+/// Returns " Did you mean 'word'?" for the word most like `text`, the first of several. Returns
+/// nothing where no word is near enough for a slip of the finger.
 std::string suggestion(const std::string& text, const std::vector<std::string>& words);
 
-/// The same behind a sentence that has no stop yet.
+/// Returns a suggestion behind a sentence that has no full stop yet.
 inline std::string afterStop(const std::string& suggestion) {
     return suggestion.empty() ? "" : "." + suggestion;
 }
 
-/// Returns "a, b, c" for a line that stays one that can be read: of many names the first few, and
-/// how many others there are.
+/// Returns "a, b, c" for a readable line: of many names the first few, and the number of the
+/// others.
 std::string nameList(const std::vector<std::string>& names);
 
 }  // namespace deltasplat

@@ -11,8 +11,8 @@
 
 namespace deltasplat {
 
-/// An array that is not written to when it is made, so that several threads can do that later:
-/// clearing a large one takes longer than filling it. Moves, does not copy.
+/// An array whose elements have no value until they are written, so that several threads can write
+/// them: clearing a large array takes longer than filling it. Moves, does not copy.
 template <class T>
 requires std::is_trivially_default_constructible_v<T> && std::is_trivially_destructible_v<T>
 class UnclearedArray {
@@ -48,8 +48,8 @@ class UnclearedArray {
     T* data_ = nullptr;
 };
 
-/// Gives a vector elements that have no value until one is written, so that several threads can do
-/// that: clearing a large one takes longer than filling it.
+/// The allocator of vectors whose elements have no value until they are written, as those of
+/// UnclearedArray.
 template <typename Base>
 class UnclearedAllocator : public Base {
   public:

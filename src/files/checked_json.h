@@ -12,8 +12,8 @@
 
 namespace deltasplat {
 
-/// Returns a whole number of JSON, which would convert any number to one, whatever came of it.
-/// @throw Error(kInput) for anything else, or one that a T cannot hold
+/// Returns a whole number of JSON. (The parser itself converts any number, whatever comes of it.)
+/// @throw Error(kInput) if it is no whole number, or one that a T cannot hold
 template <typename T, typename Json>
 T wholeNumberOf(const Json& json) {
     if (json.is_number_unsigned()) {
@@ -26,17 +26,17 @@ T wholeNumberOf(const Json& json) {
     throw Error(ErrorCode::kInput, "no whole number, or one that is too large");
 }
 
-/// Reads JSON that a program of this kind has written, which anybody may have changed.
+/// Reads JSON that this program has written and that anybody may have changed.
 /// @param where     names the text in messages
-/// @param expected  what it should be, likewise
-/// @throw Error(kInput) if it is no JSON, or nested deeper than 32 levels, which copying and
-/// writing would follow one inside the other; Error(kFailed) if there is not enough memory for it,
-/// before any is taken
+/// @param expected  says in messages what the text should be
+/// @throw Error(kInput) if it is no JSON, or nested deeper than 32 levels, because copying and
+/// writing
+///        recurse; Error(kFailed) if memory does not hold it, before any is taken
 nlohmann::ordered_json parseCheckedJson(const std::string& text, const std::string& where,
                                         const std::string& expected);
 
-/// The same of a file.
-/// @throw Error(kInput) if it is none that can be read
+/// The same for a file.
+/// @throw Error(kInput) if the file cannot be read
 nlohmann::ordered_json readCheckedJson(const std::filesystem::path& file,
                                        const std::string& expected);
 

@@ -21,14 +21,14 @@ class Descriptor {
 
     int get() const { return number_; }
     explicit operator bool() const { return number_ >= 0; }
-    /// Closes it; returns what closing says (0: fine).
+    /// Closes the descriptor; returns what close() returns, 0 if all is well.
     int reset() { return number_ >= 0 ? ::close(std::exchange(number_, -1)) : 0; }
 
   private:
     int number_;
 };
 
-/// Throws Error(kOutput) "<file>: cannot be written: <what the system says about `systemError`>".
+/// Throws Error(kOutput) "<file>: cannot be written: <the system's text for `systemError`>".
 [[noreturn]] void throwCannotWrite(const std::filesystem::path& file, int systemError);
 
 /// Throws Error(kOutput) "<file>: cannot be written: there is no folder <folder>".

@@ -17,10 +17,11 @@ class FileBytes {
   public:
     /// @throw Error(kInput) if the file is missing, not regular or cannot be opened
     explicit FileBytes(const std::filesystem::path& file);
-    /// Returns the bytes that a file holds under gzip, in memory.
-    /// @throw Error(kInput) if it is no sound gzip; Error(kFailed) if they do not fit into memory
+    /// Unpacks a gzip file into memory.
+    /// @throw Error(kInput) if it is no sound gzip; Error(kFailed) if the bytes do not fit into
+    /// memory
     static std::shared_ptr<const FileBytes> unpacked(const std::filesystem::path& file);
-    /// Returns the bytes of a file, or if it begins as gzip does those that it holds.
+    /// Opens a file, or unpacks it if it begins as gzip does.
     static std::shared_ptr<const FileBytes> plain(const std::filesystem::path& file);
     ~FileBytes();
     FileBytes(const FileBytes&) = delete;
@@ -28,26 +29,26 @@ class FileBytes {
 
     const std::filesystem::path& path() const { return path_; }
     std::uint64_t size() const { return size_; }
-    /// Reads `bytes` bytes from `place` on; returns how many there were.
-    /// @throw Error(kInput) if they cannot be read
+    /// Reads up to `bytes` bytes from `place` on; returns the number read.
+    /// @throw Error(kInput) if the file cannot be read
     std::size_t read(std::uint64_t place, void* to, std::size_t bytes) const;
-    /// Does the same on all threads.
+    /// The same on all threads.
     std::size_t readInParts(std::uint64_t place, void* to, std::size_t bytes) const;
     /// @throw Error(kInput) if the file was written to after it was opened
     void requireUnchanged() const;
-    /// Says so.
+    /// Throws that error.
     [[noreturn]] void throwChanged() const;
 
   private:
-    // Its size, and when it was last written to, in seconds and nanoseconds.
+    // The size, and the time of the last write in seconds and nanoseconds.
     using State = std::array<std::int64_t, 3>;
     std::optional<State> state() const;
 
     std::filesystem::path path_;
     int handle_ = -1;
     std::uint64_t size_ = 0;
-    std::optional<State> opened_;            // state() when it was opened
-    std::optional<std::vector<char>> held_;  // in place of the file's own bytes
+    std::optional<State> opened_;            // state() when the file was opened
+    std::optional<std::vector<char>> held_;  // the unpacked bytes, in place of the file's own
 };
 
 class Unpacker;
@@ -55,12 +56,12 @@ class Unpacker;
 /// How the bytes of a file are packed.
 enum class Packing {
     kNone,
-    kGzip,  ///< one gzip member or several, up to the end of the file, zeros aside
-    kZlib   ///< one zlib or gzip stream; what follows it is nobody's
+    kGzip,  ///< gzip members up to the end of the file, zeros aside
+    kZlib   ///< one zlib or gzip stream; bytes behind it are ignored
 };
 
-/// Returns kGzip for a file that begins as gzip does, whatever its name; kNone for others.
-/// @param start  place in the file to look at
+/// Returns kGzip for a file that begins as gzip does, whatever its name; else kNone.
+/// @param start  place in the file where the packed bytes would begin
 /// @throw Error(kInput) if the file is missing, not regular or cannot be opened
 Packing packingOf(const std::filesystem::path& file, std::uint64_t start = 0);
 
@@ -70,33 +71,33 @@ class ByteSource {
     /// @param start  place in the file of the first byte, plain or packed
     /// @throw Error(kInput) if the file is missing, not regular or cannot be opened
     ByteSource(const std::filesystem::path& file, Packing packing, std::uint64_t start = 0);
-    /// The same of a file that is open.
+    /// The same for an open file.
     explicit ByteSource(std::shared_ptr<const FileBytes> file, std::uint64_t start = 0,
                         Packing packing = Packing::kNone);
     ~ByteSource();
     ByteSource(const ByteSource&) = delete;
     ByteSource& operator=(const ByteSource&) = delete;
 
-    /// Reads the next `bytes` bytes, fewer only at the end; returns how many. Packed bytes are
-    /// known to be whole, by their count and checksum, once there were fewer.
-    /// @throw Error(kInput) if the file cannot be read, or is corrupt, cut short, or goes on behind
-    ///        what is packed
+    /// Reads the next `bytes` bytes, fewer only at the end; returns the number read. At the end the
+    /// count and the checksum of packed bytes have been checked.
+    /// @throw Error(kInput) if the file cannot be read, is corrupt or cut short, or goes on behind
+    ///        the packed bytes
     std::size_t read(void* to, std::size_t bytes);
-    /// Passes over up to `bytes` bytes, calling `step` now and then; returns how many there were.
+    /// Passes over up to `bytes` bytes and calls `step` now and then; returns the number passed.
     /// @throw as read, and what `step` throws
     std::uint64_t skip(std::uint64_t bytes, const std::function<void()>& step);
 
   private:
     std::shared_ptr<const FileBytes> file_;
     std::uint64_t place_;
-    std::unique_ptr<Unpacker> unpacker_;  // if packed
+    std::unique_ptr<Unpacker> unpacker_;  // null for a plain file
 };
 
-/// The rows of a volume that lie in a file one after the other, slice by slice.
+/// Rows of equal length that lie in a file one after the other, slice by slice.
 class StoredRows {
   public:
-    /// @param start        place in the file of the first one
-    /// @param rowsOfSlice  how many make a slice
+    /// @param start        place in the file of the first row
+    /// @param rowsOfSlice  rows per slice
     StoredRows(std::shared_ptr<const FileBytes> file, std::uint64_t start, std::size_t rowBytes,
                std::int64_t rowsOfSlice)
         : file_(std::move(file)), start_(start), rowBytes_(rowBytes), rowsOfSlice_(rowsOfSlice) {}

@@ -11,14 +11,14 @@
 
 namespace deltasplat {
 
-/// Where the bytes of an output are to go, found once: what is renamed or replaced later on does
-/// not lead elsewhere.
+/// The place of an output, found once, so that nothing renamed or replaced later leads the bytes
+/// elsewhere.
 struct OutputTarget {
-    Descriptor folder;                    ///< good for calls as openat, not for reading
-    std::string name;                     ///< in that folder; of a regular file, or of none
-    std::optional<struct stat> existing;  ///< empty: there is no such file yet
-    bool isDevice = false;                ///< a device, a pipe or an open file: written to as it is
-    bool isOpenFile = false;              ///< known by a descriptor (/dev/stdout, /proc/self/fd/3)
+    Descriptor folder;                    ///< for openat and the like, not for reading
+    std::string name;                     ///< in that folder: of a regular file, or unused
+    std::optional<struct stat> existing;  ///< empty if there is no such file yet
+    bool isDevice = false;                ///< a device, pipe or open file: written to directly
+    bool isOpenFile = false;              ///< named by a descriptor: /dev/stdout, /proc/self/fd/3
 };
 
 /// Follows links to where `file` leads. A link at its end that lies in a folder which others than
@@ -28,9 +28,9 @@ struct OutputTarget {
 /// written, or if it is a link that cannot be resolved
 OutputTarget findTarget(const std::filesystem::path& file);
 
-/// Opens a device, a pipe or an open file for writing; of the latter nothing is lost that is in it:
-/// a descriptor of this process goes on where it is, others' files are appended to. -1: errno says
-/// why not.
+/// Opens a device, a pipe or an open file for writing. An open file keeps its contents: a
+/// descriptor of this process goes on at its position, files of other processes are appended to.
+/// @return -1 if it fails; then errno says why
 Descriptor openDirectly(const OutputTarget& target);
 
 }  // namespace deltasplat

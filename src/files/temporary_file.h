@@ -11,7 +11,7 @@
 
 namespace deltasplat {
 
-/// A file, by its number in the system.
+/// A file, by its device and inode.
 struct FileIdentity {
     dev_t device = 0;
     ino_t number = 0;
@@ -22,31 +22,30 @@ struct FileIdentity {
 FileIdentity identityOf(const struct stat& status);
 /// @param file  a descriptor
 FileIdentity identityOf(int file);
-/// Returns whether a name in a folder, links not followed, is of this file. For signal handlers,
-/// too.
+/// Returns whether a name in a folder belongs to this file. Links are not followed. Signal handlers
+/// may call it.
 bool isAt(const FileIdentity& file, int folder, const char* name);
 
-/// A name in a folder, the latter by a descriptor that outlives this.
+/// A name in a folder. The descriptor of the folder outlives this.
 struct NameInFolder {
     int folder;
     const std::string& name;
 };
 
-/// A place in the list of temporary files.
+/// An entry of the list of temporary files.
 struct TemporaryEntry;
 
-/// Notes a file that has to be removed when the process ends without destroying its objects, in a
-/// form that signal handlers can read (removeTemporaryFiles() in atomic_file.h).
+/// Notes a file that a signal handler has to remove (removeTemporaryFiles() in atomic_file.h),
+/// where the process ends without destroying its objects.
 TemporaryEntry* listTemporary(const NameInFolder& file);
-/// Takes an entry off the list. Null: does nothing.
+/// Takes an entry off the list; does nothing for null.
 void unlist(TemporaryEntry* entry) noexcept;
 
-/// A new, empty, locked file beside the one that it is to become, named
-/// `.deltasplat.<name>.<number>.tmp`, removed by the destructor unless it was renamed. Its lock
-/// (flock) ends with its process, however that ends: who can take it knows that nobody writes the
-/// file any more. That is how creating one removes what dead processes left of the same name,
-/// whatever machine or container they ran on, as long as the file system has locks; where it has
-/// none, nothing is removed.
+/// A new, empty, locked file `.deltasplat.<name>.<number>.tmp` beside the output. The destructor
+/// removes it unless it was renamed. Its lock (flock) ends with its process, however the process
+/// ends. So a process that can take the lock knows that nobody writes the file any more, and
+/// removes it when it creates one of the same name. Where the file system has no locks, nothing is
+/// removed.
 class TemporaryFile {
   public:
     /// @param folder     a descriptor of the folder, which must outlive this
@@ -61,9 +60,9 @@ class TemporaryFile {
 
     const std::string& name() const { return name_; }
     int descriptor() const { return file_.get(); }
-    /// Returns whether a name in the folder is of this very file.
+    /// Returns whether a name in the folder belongs to this very file.
     bool isAt(const std::string& name) const;
-    /// Says that the file now has another name, or none: there is nothing to remove.
+    /// Forgets the file, because it has another name now, or none.
     void release();
 
   private:

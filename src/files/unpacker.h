@@ -13,12 +13,13 @@ struct z_stream_s;
 
 namespace deltasplat {
 
-/// Unpacks gzip or zlib streams of a file. zlib's own reading of files takes one for whole whose
-/// checksum is cut off, and one that begins with other bytes for plain.
+/// Unpacks gzip or zlib streams of a file. (zlib's gzread accepts a file whose checksum is cut off,
+/// and reads a file that begins otherwise as plain bytes.)
 class Unpacker {
   public:
-    /// @param anyStream  one zlib or gzip stream, whatever follows it; otherwise gzip members, one
-    ///                   after the other, and nothing but zeros behind them
+    /// @param anyStream  true: one zlib or gzip stream, whatever follows it; false: gzip members,
+    /// and
+    ///                   nothing but zeros behind them
     /// @param start      place in the file
     Unpacker(const FileBytes& file, bool anyStream, std::uint64_t start);
     ~Unpacker();
@@ -40,7 +41,7 @@ class Unpacker {
     std::uint64_t place_;
     std::vector<unsigned char> packed_;
     std::unique_ptr<z_stream_s> stream_;
-    int members_ = 0;  // that have ended
+    int members_ = 0;  // gzip members that have ended
     bool done_ = false;
 };
 
