@@ -5,9 +5,10 @@ set(DELTASPLAT_ROOMS)
 # nothing else of src/: each room has an include path of its own, on which its folder lies as NAME/.
 #   USES     rooms below it
 #   PUBLIC   headers of include/deltasplat/ that belong to it
-#   SOURCES  its .cpp files
+#   LIBRARIES  of others, besides those that all rooms have
+#   SOURCES  its .cpp files; a room of headers has none
 function(deltasplat_room name)
-    cmake_parse_arguments(PARSE_ARGV 1 room "" "" "USES;PUBLIC;SOURCES")
+    cmake_parse_arguments(PARSE_ARGV 1 room "" "" "USES;PUBLIC;LIBRARIES;SOURCES")
     set(path ${CMAKE_CURRENT_BINARY_DIR}/rooms/${name})
     file(MAKE_DIRECTORY ${path})
     file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/src/${name} ${path}/${name} SYMBOLIC)
@@ -18,14 +19,20 @@ function(deltasplat_room name)
             ${path}/deltasplat/${header} SYMBOLIC)
     endforeach()
     list(TRANSFORM room_SOURCES PREPEND src/${name}/)
+    list(TRANSFORM room_USES PREPEND deltasplat_)
     set(target deltasplat_${name})
+    if(NOT room_SOURCES)
+        add_library(${target} INTERFACE)
+        target_include_directories(${target} INTERFACE ${path})
+        target_link_libraries(${target} INTERFACE ${room_USES})
+        return()
+    endif()
     add_library(${target} OBJECT ${room_SOURCES})
     target_include_directories(${target} PUBLIC ${path})
-    list(TRANSFORM room_USES PREPEND deltasplat_)
     target_compile_features(${target} PUBLIC cxx_std_20)
     target_compile_definitions(${target} PRIVATE DELTASPLAT_VERSION="${PROJECT_VERSION}")
     target_link_libraries(${target} PUBLIC ${room_USES} glm::glm
-        PRIVATE TBB::tbb hwy::hwy ZLIB::ZLIB nlohmann_json::nlohmann_json)
+        PRIVATE ${room_LIBRARIES} TBB::tbb hwy::hwy ZLIB::ZLIB nlohmann_json::nlohmann_json)
     deltasplat_compile_options(${target})
     list(APPEND DELTASPLAT_ROOMS ${target})
     set(DELTASPLAT_ROOMS ${DELTASPLAT_ROOMS} PARENT_SCOPE)

@@ -11,7 +11,7 @@
 #include "deltasplat/error.h"
 #include "files/descriptor.h"
 #include "files/output_target.h"
-#include "ingest/input_files.h"
+#include "formats/input_files.h"
 #include "process/interrupt.h"
 #include "process/run_log.h"
 

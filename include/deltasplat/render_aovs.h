@@ -44,8 +44,6 @@ inline constexpr double kLeastDepthOpacity = 0.001;
 
 /// Lights that get channels of their own, beside their sum.
 inline constexpr int kMostLightChannels = 8;
-/// What depth is where nothing is seen, as in Cycles.
-inline constexpr float kNoDepth = 1e10f;
 
 /// Renders channels beside a picture of Mode::kComposite. Premultiplied: `emission` + `ambient` +
 /// `direct` is the picture, as far as each is told of a voxel (ClassTable: to 2^-8). Depths and

@@ -8,8 +8,8 @@
 #include <bit>
 #include <cmath>
 
+#include "base/opacity_steps.h"
 #include "composite/compositor.h"
-#include "optics/opacity_steps.h"
 
 namespace deltasplat {
 namespace {

@@ -11,8 +11,8 @@
 #define HWY_TARGET_INCLUDE "composite/scaled_kernels.cpp"
 #include "hwy/foreach_target.h"
 // After foreach_target.h, as Highway asks.
+#include "base/opacity_steps-inl.h"
 #include "hwy/highway.h"
-#include "optics/opacity_steps-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {

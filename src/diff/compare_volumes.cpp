@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/diff/compare_volumes.h"
-#include "ingest/placement.h"
+#include "volume/placement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@
 #include "diff/compare_trees.h"
 #include "diff/error_sums.h"
 #include "diff/voxel_source.h"
-#include "ingest/length_unit.h"
+#include "volume/length_unit.h"
 
 namespace deltasplat {
 namespace {

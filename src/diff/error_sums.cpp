@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ingest/grids/grid_values.h"
+#include "volume/grid_values.h"
 
 namespace deltasplat {
 namespace {

@@ -12,13 +12,13 @@
 #include <utility>
 
 #include "deltasplat/error.h"
-#include "ingest/codes/code_math.h"
-#include "ingest/codes/code_tree.h"
-#include "ingest/grids/grid_metadata.h"
-#include "ingest/grids/grid_values.h"
-#include "ingest/grids/tree_grid.h"
-#include "ingest/grids/tree_types.h"
-#include "ingest/vdb/packed_grid.h"
+#include "formats/vdb/grid_metadata.h"
+#include "formats/vdb/packed_grid.h"
+#include "volume/code_math.h"
+#include "volume/code_tree.h"
+#include "volume/grid_values.h"
+#include "volume/tree_grid.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "base/bits.h"
 #include "base/text.h"
-#include "ingest/length_unit.h"
-#include "ingest/placement.h"
+#include "volume/length_unit.h"
+#include "volume/placement.h"
 
 namespace deltasplat {
 namespace {

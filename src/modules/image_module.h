@@ -6,14 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "cameras/readers.h"
-#include "deltasplat/hold_out.h"
-#include "deltasplat/image/color_management.h"
-#include "deltasplat/image/write_image.h"
-#include "deltasplat/optics/environment.h"
-#include "ingest/readers.h"
-
 namespace deltasplat {
+
+struct CameraMotion;
+struct ColorOptions;
+struct DenseSource;
+struct DepthImage;
+struct Environment;
+struct Image;
+struct ImageFileOptions;
+struct Listener;
+struct ReadOptions;
 
 /// What ColorTransform does.
 class ColorProcessor {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "ingest/dicom/dicom_sniff.h"
-#include "ingest/readers.h"
-
 namespace deltasplat {
+
+struct DenseSource;
+struct DicomSeries;
 
 /// What is read through GDCM, as ImageModule is of OpenImageIO.
 struct MedicalModule {

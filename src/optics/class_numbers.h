@@ -8,7 +8,7 @@
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/optics/transfer_function.h"
-#include "ingest/placement.h"
+#include "volume/placement.h"
 
 namespace deltasplat {
 

@@ -3,7 +3,7 @@
 // along a ray), with the opacity correction for the distance between slices of P. Lacroute, Fast
 // Volume Rendering Using a Shear-Warp Factorization, 1995.
 #include "deltasplat/optics/class_table.h"
-#include "ingest/placement.h"
+#include "volume/placement.h"
 
 #include <algorithm>
 #include <array>

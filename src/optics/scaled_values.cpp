@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "deltasplat/optics/default_ramp.h"
-#include "ingest/codes/code_counts.h"
+#include "volume/code_counts.h"
 
 namespace deltasplat {
 namespace {

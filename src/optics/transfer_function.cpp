@@ -14,8 +14,8 @@
 #include "deltasplat/ingest/value_statistics.h"
 #include "deltasplat/optics/default_ramp.h"
 #include "deltasplat/optics/transfer_function.h"
-#include "ingest/codes/code_counts.h"
 #include "optics/color_curve.h"
+#include "volume/code_counts.h"
 
 namespace deltasplat {
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "base/opacity_steps.h"
 #include "optics/check_optics.h"
-#include "optics/opacity_steps.h"
 
 namespace deltasplat {
 

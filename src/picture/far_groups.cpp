@@ -18,12 +18,12 @@
 #include "base/affine.h"
 #include "base/memory.h"
 #include "base/text.h"
-#include "delta/code_blocks.h"
 #include "deltasplat/ingest/slot.h"
-#include "ingest/codes/code_tree.h"
-#include "ingest/codes/slot_blocks.h"
 #include "optics/voxel_painter.h"
 #include "view/seen_box.h"
+#include "volume/code_blocks.h"
+#include "volume/code_tree.h"
+#include "volume/slot_blocks.h"
 
 namespace deltasplat {
 namespace {

@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "delta/code_blocks.h"
-#include "optics/joined_classes.h"
 #include "picture/picture_view.h"
 #include "picture/prepared_axis.h"
 #include "view/factorization.h"
+#include "volume/code_blocks.h"
+#include "words/joined_classes.h"
 
 namespace deltasplat {
 namespace {

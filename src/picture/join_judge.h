@@ -7,11 +7,11 @@
 #include <mutex>
 #include <vector>
 
-#include "delta/join_probe.h"
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/prepared_scene.h"
 #include "deltasplat/view/factorization.h"
 #include "view/joined_slants.h"
+#include "words/join_probe.h"
 
 namespace deltasplat {
 

@@ -11,7 +11,7 @@
 #include "picture/prepared_axis.h"
 #include "picture/sheet_plan.h"
 #include "splat/digit_voxels.h"
-#include "view/seen_box.h"
+#include "volume/seen_cone.h"
 
 namespace deltasplat {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/memory.h"
-#include "image/clear_image.h"
+#include "screen/clear_image.h"
 
 namespace deltasplat {
 namespace {

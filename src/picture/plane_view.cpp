@@ -5,9 +5,9 @@
 #include <glm/exponential.hpp>
 #include <vector>
 
+#include "base/opacity_steps.h"
 #include "base/parallel.h"
-#include "image/warp_region.h"
-#include "optics/opacity_steps.h"
+#include "screen/warp_region.h"
 
 namespace deltasplat {
 

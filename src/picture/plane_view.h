@@ -14,7 +14,7 @@
 #include "deltasplat/image/pixel_box.h"
 #include "deltasplat/view/camera.h"
 #include "deltasplat/view/factorization.h"
-#include "image/warp.h"
+#include "screen/warp.h"
 #include "view/base_plane.h"
 
 namespace deltasplat {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/prepared_axis.h"
-#include "ingest/placement.h"
+#include "volume/placement.h"
 
 #include <algorithm>
 #include <bit>
@@ -13,17 +13,17 @@
 #include "base/default_floats.h"
 #include "base/parallel.h"
 #include "base/portable_math.h"
-#include "delta/code_blocks.h"
-#include "delta/value_mixer.h"
 #include "deltasplat/error.h"
-#include "ingest/box_voxels.h"
-#include "medium/part_looks.h"
+#include "lighting/part_looks.h"
 #include "optics/class_numbers.h"
 #include "optics/hold_rule.h"
-#include "optics/joined_classes.h"
 #include "picture/picture_view.h"
 #include "picture/sheet_plan.h"
-#include "view/seen_box.h"
+#include "volume/box_voxels.h"
+#include "volume/code_blocks.h"
+#include "volume/seen_cone.h"
+#include "words/joined_classes.h"
+#include "words/value_mixer.h"
 
 namespace deltasplat {
 namespace {

@@ -9,14 +9,14 @@
 #include <utility>
 
 #include "base/kept_memory.h"
-#include "delta/packed_deltas.h"
-#include "delta/slice_joiner.h"
 #include "deltasplat/prepared_scene.h"
 #include "optics/color_curve.h"
 #include "picture/far_groups.h"
 #include "picture/join_judge.h"
 #include "splat/word_colors.h"
-#include "view/seen_box.h"
+#include "volume/seen_cone.h"
+#include "words/packed_deltas.h"
+#include "words/slice_joiner.h"
 
 namespace deltasplat {
 
@@ -82,7 +82,7 @@ struct PreparedScene::Impl {
     JoinJudge joinJudge;
     /// Returns whether slices can be joined.
     bool canJoinSlices() const;
-    /// Returns whether two can be for all cameras (optics/joined_classes.h), along whatever axis.
+    /// Returns whether two can be for all cameras (words/joined_classes.h), along whatever axis.
     bool canPairSlices() const;
     /// Returns how many blocks of 8x8x8 voxels can be seen; counted once for each axis.
     std::size_t blocksSeen(int sliceAxis) const;

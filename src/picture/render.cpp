@@ -9,10 +9,10 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
-#include "image/clear_image.h"
-#include "ingest/box_voxels.h"
 #include "picture/prepared_axis.h"
 #include "picture/rays/ray_render.h"
+#include "screen/clear_image.h"
+#include "volume/box_voxels.h"
 
 namespace deltasplat {
 namespace {

@@ -12,14 +12,14 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "deltasplat/prepared_scene.h"
-#include "image/clear_image.h"
-#include "image/deep_builder.h"
-#include "ingest/box_voxels.h"
 #include "picture/empty_picture.h"
 #include "picture/extras/render_deep.h"
 #include "picture/far_groups.h"
 #include "picture/kept_view.h"
 #include "picture/plane_parts.h"
+#include "screen/clear_image.h"
+#include "screen/deep_builder.h"
+#include "volume/box_voxels.h"
 
 namespace deltasplat {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "base/bits.h"
 #include "base/parallel.h"
-#include "delta/block_windows.h"
-#include "ingest/codes/leaf_slices.h"
-#include "ingest/delta/delta_origin.h"
-#include "ingest/grids/tree_grid.h"
+#include "formats/delta/block_windows.h"
+#include "formats/delta/delta_origin.h"
+#include "volume/leaf_slices.h"
+#include "volume/tree_grid.h"
 
 namespace deltasplat {
 

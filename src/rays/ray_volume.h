@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "delta/code_blocks.h"
 #include "deltasplat/ingest/volume.h"
 #include "rays/block_kernels.h"
+#include "volume/code_blocks.h"
 
 namespace deltasplat {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "delta/packed_deltas.h"
 #include "deltasplat/optics/class_table.h"
+#include "words/packed_deltas.h"
 
 namespace deltasplat {
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "delta/packed_deltas.h"
 #include "deltasplat/optics/class_table.h"
+#include "words/packed_deltas.h"
 
 namespace deltasplat {
 

@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "base/bits.h"
-#include "delta/block_kernels.h"
+#include "volume/block_kernels.h"
 
 namespace deltasplat {
 namespace {

@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "delta/packed_deltas.h"
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/splat/footprint.h"
 #include "hwy/cache_control.h"
@@ -20,6 +19,7 @@
 #include "splat/sheet.h"
 #include "splat/sheet_cover.h"
 #include "splat/word_colors.h"
+#include "words/packed_deltas.h"
 
 namespace deltasplat {
 

@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
-#include "delta/packed_deltas.h"
 #include "deltasplat/optics/class_table.h"
 #include "optics/voxel_painter.h"
+#include "words/packed_deltas.h"
 
 namespace deltasplat {
 

@@ -14,11 +14,11 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "ingest/grids/grid_metadata.h"
-#include "ingest/grids/leaf_bytes.h"
-#include "ingest/grids/tree_types.h"
-#include "ingest/vdb/vdb_transform.h"
+#include "formats/vdb/grid_metadata.h"
 #include "synth/volumes.h"
+#include "volume/leaf_bytes.h"
+#include "volume/tree_types.h"
+#include "volume/vdb_transform.h"
 
 namespace deltasplat {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "deltasplat/synth/write_analytic.h"
-#include "ingest/grids/tree_grid.h"
+#include "volume/tree_grid.h"
 
 namespace deltasplat {
 

@@ -13,10 +13,10 @@
 #include "base/text.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
-#include "ingest/raw/raw_format.h"
+#include "formats/raw/raw_format.h"
+#include "formats/vdb/write_vdb.h"
 #include "synth/sample_grids.h"
 #include "synth/volumes.h"
-#include "vdb/write_vdb.h"
 
 namespace deltasplat {
 namespace {

@@ -11,8 +11,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "base/opacity_steps.h"
 #include "base/parallel.h"
-#include "optics/opacity_steps.h"
 
 namespace deltasplat {
 namespace {

@@ -20,8 +20,8 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/threads.h"
-#include "ingest/grids/tree_types.h"
-#include "ingest/raw/raw_format.h"
+#include "formats/raw/raw_format.h"
+#include "volume/tree_types.h"
 
 namespace {
 

@@ -20,7 +20,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/codes/code_tree.h"
+#include "volume/code_tree.h"
 
 namespace {
 

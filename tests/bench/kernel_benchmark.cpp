@@ -12,7 +12,7 @@
 
 #include "composite/over_kernels.h"
 #include "deltasplat/threads.h"
-#include "image/warp.h"
+#include "screen/warp.h"
 #include "splat/cell_kernels.h"
 #include "splat/stamp_kernels.h"
 #include "splat/tile_kernels.h"

@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <map>
 
-#include "ingest/codes/code_tree.h"
-#include "ingest/grids/tree_types.h"
 #include "unit/convert_helpers.h"
 #include "unit/vdb_compare.h"
+#include "volume/code_tree.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat::testing {
 namespace {

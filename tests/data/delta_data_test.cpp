@@ -13,9 +13,9 @@
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/grids/tree_grid.h"
-#include "ingest/grids/tree_types.h"
 #include "unit/ingest_helpers.h"
+#include "volume/tree_grid.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat {
 namespace {

@@ -11,10 +11,10 @@
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/codes/code_tree.h"
-#include "ingest/grids/tree_grid.h"
-#include "ingest/grids/tree_types.h"
 #include "support/kept_grid.h"
+#include "volume/code_tree.h"
+#include "volume/tree_grid.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat {
 namespace {

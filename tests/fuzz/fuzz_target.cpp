@@ -15,7 +15,7 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/render.h"
-#include "ingest/codes/code_tree.h"
+#include "volume/code_tree.h"
 
 namespace deltasplat::fuzz {
 namespace {

@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "../tools/options/parse.h"
+#include "formats/raw/raw_format.h"
 #include "fuzz/fuzz_target.h"
-#include "ingest/raw/raw_format.h"
 
 namespace deltasplat::fuzz {
 namespace {

@@ -2,7 +2,7 @@
 // What goes into a delta grid comes out of it: read by the library and, by the format's description
 // alone, by a reader that shares no code with it.
 #include "deltasplat/delta/delta_file.h"
-#include "ingest/grids/tree_types.h"
+#include "volume/tree_types.h"
 
 #include <gtest/gtest.h>
 
@@ -15,16 +15,16 @@
 #include <tuple>
 #include <vector>
 
-#include "delta/inactive_values.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/codes/code_tree.h"
-#include "ingest/delta/delta_format.h"
-#include "ingest/grids/grid_metadata.h"
+#include "formats/delta/delta_format.h"
+#include "formats/delta/inactive_values.h"
+#include "formats/vdb/grid_metadata.h"
 #include "reference/plain_delta_reader.h"
 #include "support/kept_grid.h"
 #include "support/same_volume.h"
 #include "unit/ingest_helpers.h"
+#include "volume/code_tree.h"
 
 namespace deltasplat {
 namespace {

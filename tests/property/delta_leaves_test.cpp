@@ -14,21 +14,21 @@
 #include <type_traits>
 #include <vector>
 
-#include "delta/packed_deltas.h"
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/render.h"
 #include "deltasplat/threads.h"
-#include "ingest/codes/code_tree.h"
-#include "ingest/codes/slot_blocks.h"
-#include "ingest/delta/delta_format.h"
-#include "ingest/delta/read_delta_grid.h"
-#include "ingest/grids/tree_types.h"
-#include "ingest/vdb/vdb_file.h"
-#include "ingest/vdb/vdb_transform.h"
+#include "formats/delta/delta_format.h"
+#include "formats/delta/read_delta_grid.h"
+#include "formats/vdb/vdb_file.h"
 #include "support/same_picture.h"
 #include "support/same_volume.h"
 #include "unit/ingest_helpers.h"
+#include "volume/code_tree.h"
+#include "volume/slot_blocks.h"
+#include "volume/tree_types.h"
+#include "volume/vdb_transform.h"
+#include "words/packed_deltas.h"
 
 namespace deltasplat {
 namespace {

@@ -10,9 +10,9 @@
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "deltasplat/render.h"
-#include "ingest/codes/code_tree.h"
-#include "ingest/grids/tree_types.h"
 #include "unit/ingest_helpers.h"
+#include "volume/code_tree.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat {
 namespace {

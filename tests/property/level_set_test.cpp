@@ -12,7 +12,7 @@
 #include "deltasplat/cut/cut_volume.h"
 #include "deltasplat/openvdb_grid.h"
 #include "deltasplat/render.h"
-#include "ingest/codes/code_tree.h"
+#include "volume/code_tree.h"
 
 namespace deltasplat::test {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "deltasplat/prepared_scene.h"
 #include "deltasplat/render.h"
-#include "optics/scatter_kernels.h"
+#include "lighting/scatter_kernels.h"
 #include "support/error_of.h"
 #include "support/lit_fog.h"
 #include "support/make_volume.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "property/test_scene.h"
-#include "ingest/grids/tree_types.h"
+#include "volume/tree_types.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/io/File.h>

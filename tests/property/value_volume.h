@@ -2,8 +2,8 @@
 #pragma once
 
 #include "deltasplat/ingest/volume.h"
-#include "ingest/codes/code_tree.h"
 #include "reference/reference_rays.h"
+#include "volume/code_tree.h"
 
 namespace deltasplat::test {
 

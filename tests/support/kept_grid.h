@@ -2,8 +2,8 @@
 #pragma once
 
 #include "deltasplat/ingest/volume.h"
-#include "ingest/grids/tree_grid.h"
-#include "ingest/grids/tree_types.h"
+#include "volume/tree_grid.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat::testing {
 

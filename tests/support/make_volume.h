@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "deltasplat/ingest/volume.h"
-#include "ingest/codes/code_tree.h"
+#include "volume/code_tree.h"
 
 namespace deltasplat::test {
 

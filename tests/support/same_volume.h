@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "deltasplat/ingest/volume.h"
-#include "ingest/codes/code_tree.h"
-#include "ingest/grids/tree_types.h"
+#include "volume/code_tree.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat::test {
 

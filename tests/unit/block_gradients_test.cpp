@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gradients of linear fields, which central differences state exactly.
-#include "delta/block_gradients.h"
+#include "words/block_gradients.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "delta/code_blocks.h"
 #include "support/make_volume.h"
+#include "volume/code_blocks.h"
 
 namespace deltasplat {
 namespace {

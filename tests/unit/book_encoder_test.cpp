@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The quick way to codes finds those that CodeBook::codeOf finds, and the quick measure of errors
 // the largest.
-#include "ingest/codes/book_encoder.h"
+#include "volume/book_encoder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "delta/class_ramps.h"
+#include "volume/class_ramps.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "delta/block_kernels.h"
 #include "support/simd_levels.h"
+#include "volume/block_kernels.h"
 
 namespace deltasplat {
 namespace {

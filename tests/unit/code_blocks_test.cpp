@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Blocks are listed in the order of columns, whatever thread put them there.
-#include "delta/code_blocks.h"
+#include "volume/code_blocks.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "deltasplat/threads.h"
-#include "ingest/codes/code_tree.h"
 #include "support/make_volume.h"
+#include "volume/code_tree.h"
 
 namespace deltasplat {
 namespace {

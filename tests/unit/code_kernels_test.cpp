@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ingest/codes/code_kernels.h"
+#include "volume/code_kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -15,11 +15,11 @@
 #include <utility>
 #include <vector>
 
-#include "delta/block_kernels.h"
-#include "ingest/codes/code_counts.h"
-#include "ingest/delta/leaf_kernels.h"
-#include "ingest/raw/raw_kernels.h"
+#include "formats/delta/leaf_kernels.h"
+#include "formats/raw/raw_kernels.h"
 #include "support/simd_levels.h"
+#include "volume/block_kernels.h"
+#include "volume/code_counts.h"
 
 namespace deltasplat {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Columns of deltas that stand for millions of blocks: what shows nothing costs nothing.
-#include "ingest/delta/column_decoder.h"
+#include "formats/delta/column_decoder.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "ingest/codes/slot_blocks.h"
-#include "ingest/delta/delta_format.h"
-#include "ingest/delta/exact_slots.h"
+#include "formats/delta/delta_format.h"
+#include "formats/delta/exact_slots.h"
+#include "volume/slot_blocks.h"
 
 namespace deltasplat {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares the comparison with one that visits every voxel of a box, and with closed forms.
 #include "deltasplat/diff/compare_volumes.h"
-#include "ingest/grids/tree_types.h"
+#include "volume/tree_types.h"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
-#include "ingest/grids/tree_grid.h"
 #include "support/make_volume.h"
+#include "volume/tree_grid.h"
 
 namespace deltasplat {
 namespace {

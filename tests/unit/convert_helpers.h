@@ -11,8 +11,8 @@
 
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/grids/tree_types.h"
 #include "unit/ingest_helpers.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat::testing {
 

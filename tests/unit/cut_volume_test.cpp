@@ -10,11 +10,11 @@
 #include <map>
 #include <random>
 
-#include "cut/cut_region.h"
 #include "deltasplat/ingest/make_volume.h"
 #include "deltasplat/optics/default_ramp.h"
 #include "support/error_of.h"
 #include "support/make_volume.h"
+#include "volume/cut_region.h"
 
 namespace deltasplat {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/deep_builder.h"
+#include "screen/deep_builder.h"
 
 #include <gtest/gtest.h>
 

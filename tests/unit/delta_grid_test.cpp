@@ -6,9 +6,9 @@
 #include <map>
 #include <tuple>
 
-#include "delta/delta_grid.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
+#include "formats/delta/delta_grid.h"
 #include "support/make_volume.h"
 
 namespace deltasplat {

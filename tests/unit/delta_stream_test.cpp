@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stream of packed deltas: numbers come out as they went in, and what is damaged is refused
 // with one line that says what is wrong.
-#include "ingest/delta/delta_stream.h"
+#include "formats/delta/delta_stream.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/tools/Prune.h>
@@ -19,18 +19,18 @@
 #include <utility>
 #include <vector>
 
-#include "delta/bit_writer.h"
-#include "delta/stream_writer.h"
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/memory_limit.h"
-#include "ingest/delta/bit_reader.h"
-#include "ingest/delta/delta_format.h"
-#include "ingest/delta/plane_kernels.h"
-#include "ingest/delta/stream_index.h"
-#include "ingest/delta/word_tree.h"
-#include "ingest/vdb/vdb_file.h"
+#include "formats/delta/bit_reader.h"
+#include "formats/delta/bit_writer.h"
+#include "formats/delta/delta_format.h"
+#include "formats/delta/plane_kernels.h"
+#include "formats/delta/stream_index.h"
+#include "formats/delta/stream_writer.h"
+#include "formats/delta/word_tree.h"
+#include "formats/vdb/vdb_file.h"
 #include "support/error_of.h"
 #include "support/same_volume.h"
 #include "support/simd_levels.h"

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "convert/dense_layout.h"
 #include "deltasplat/ingest/label_list.h"
+#include "formats/dense/dense_layout.h"
 #include "unit/convert_helpers.h"
 
 namespace deltasplat::testing {

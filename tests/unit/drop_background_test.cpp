@@ -5,9 +5,9 @@
 #include <glm/common.hpp>
 
 #include "deltasplat/convert/write_volume.h"
-#include "ingest/grids/tree_types.h"
 #include "unit/convert_helpers.h"
 #include "unit/vdb_helpers.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat::testing {
 namespace {

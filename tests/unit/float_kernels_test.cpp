@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ingest/values/float_kernels.h"
+#include "volume/float_kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@
 
 #include "deltasplat/ingest/code_book.h"
 #include "deltasplat/simd.h"
-#include "ingest/codes/code_math.h"
-#include "ingest/values/value_census.h"
 #include "support/simd_levels.h"
+#include "volume/code_math.h"
+#include "volume/value_census.h"
 
 namespace deltasplat {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/codes/code_tree.h"
 #include "unit/ingest_helpers.h"
+#include "volume/code_tree.h"
 
 namespace deltasplat::testing {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Grids that survive half precision are written, read by OpenVDB and compared; those that are said
 // not to survive are shown to lose something.
-#include "convert/volume_grid.h"
-#include "ingest/grids/tree_types.h"
+#include "formats/vdb/volume_grid.h"
+#include "volume/tree_types.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "formats/vdb/write_vdb.h"
 #include "unit/convert_helpers.h"
-#include "vdb/write_vdb.h"
 
 namespace deltasplat {
 namespace {

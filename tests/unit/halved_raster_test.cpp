@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/halved_raster.h"
+#include "screen/halved_raster.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "image/filter_table.h"
+#include "screen/filter_table.h"
 #include "support/simd_levels.h"
 
 namespace deltasplat {

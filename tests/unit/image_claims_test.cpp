@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Headers that claim more than there can be.
-#include "ingest/images/image_claims.h"
+#include "formats/images/image_claims.h"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "deltasplat/error.h"
-#include "ingest/codes/code_tree.h"
+#include "volume/code_tree.h"
 
 namespace deltasplat::testing {
 

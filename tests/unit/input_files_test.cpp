@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ingest/input_files.h"
+#include "formats/input_files.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "delta/join_probe.h"
+#include "words/join_probe.h"
 
 #include <gtest/gtest.h>
 

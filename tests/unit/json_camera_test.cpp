@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include "cameras/motion.h"
+#include "formats/cameras/motion.h"
 #include "unit/camera_helpers.h"
 
 namespace deltasplat::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "delta/look_palette.h"
+#include "words/look_palette.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "delta/packed_deltas.h"
+#include "words/packed_deltas.h"
 
 #include <gtest/gtest.h>
 
@@ -17,11 +17,11 @@
 #include <vector>
 
 #include "base/bits.h"
-#include "delta/slice_joiner.h"
 #include "deltasplat/threads.h"
 #include "support/make_volume.h"
 #include "support/simd_levels.h"
 #include "view/joined_slants.h"
+#include "words/slice_joiner.h"
 
 namespace deltasplat {
 namespace {

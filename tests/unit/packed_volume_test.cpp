@@ -8,12 +8,12 @@
 
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/threads.h"
-#include "ingest/grids/tree_grid.h"
-#include "ingest/grids/tree_types.h"
-#include "ingest/vdb/packed_grid.h"
+#include "formats/vdb/packed_grid.h"
+#include "formats/vdb/write_vdb.h"
 #include "unit/convert_helpers.h"
 #include "unit/random_grid.h"
-#include "vdb/write_vdb.h"
+#include "volume/tree_grid.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat {
 namespace {

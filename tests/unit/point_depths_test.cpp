@@ -15,9 +15,9 @@
 
 #include "base/affine.h"
 #include "deltasplat/threads.h"
-#include "ingest/placement.h"
-#include "light/light_depths.h"
+#include "lighting/light_depths.h"
 #include "support/lit_fog.h"
+#include "volume/placement.h"
 
 namespace deltasplat {
 namespace {

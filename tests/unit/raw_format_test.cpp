@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ingest/raw/raw_format.h"
+#include "formats/raw/raw_format.h"
 
 #include <gtest/gtest.h>
 

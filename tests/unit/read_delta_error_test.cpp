@@ -9,9 +9,9 @@
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/memory_limit.h"
-#include "ingest/delta/delta_format.h"
-#include "ingest/grids/tree_types.h"
+#include "formats/delta/delta_format.h"
 #include "unit/ingest_helpers.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat {
 namespace {

@@ -14,7 +14,6 @@
 #include <thread>
 #include <vector>
 
-#include "delta/code_blocks.h"
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/cut/cut_volume.h"
 #include "deltasplat/delta/delta_file.h"
@@ -22,13 +21,14 @@
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/memory_limit.h"
 #include "deltasplat/render.h"
-#include "ingest/codes/code_tree.h"
-#include "ingest/codes/slot_blocks.h"
-#include "ingest/delta/word_tree.h"
-#include "ingest/grids/tree_types.h"
+#include "formats/delta/word_tree.h"
 #include "support/same_volume.h"
 #include "support/some_scene.h"
 #include "unit/ingest_helpers.h"
+#include "volume/code_blocks.h"
+#include "volume/code_tree.h"
+#include "volume/slot_blocks.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat {
 namespace {

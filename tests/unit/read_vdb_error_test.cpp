@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/grids/tree_types.h"
 #include "unit/ingest_helpers.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat {
 namespace {

@@ -8,11 +8,11 @@
 
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/grids/tree_types.h"
-#include "ingest/vdb/vdb_file.h"
+#include "formats/vdb/vdb_file.h"
 #include "unit/ingest_helpers.h"
 #include "unit/vdb_compare.h"
 #include "unit/vdb_helpers.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat {
 namespace {

@@ -8,9 +8,9 @@
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/threads.h"
-#include "ingest/grids/tree_types.h"
 #include "unit/ingest_helpers.h"
 #include "unit/vdb_helpers.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat {
 namespace {

@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "base/opacity_steps.h"
 #include "deltasplat/simd.h"
-#include "optics/opacity_steps.h"
 #include "support/simd_levels.h"
 
 namespace deltasplat {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which blocks a region of a picture sees from an eye.
-#include "view/seen_box.h"
+#include "volume/seen_cone.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "delta/slab_plan.h"
+#include "words/slab_plan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "delta/slice_joiner.h"
+#include "words/slice_joiner.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ingest/grids/tree_grid.h"
+#include "volume/tree_grid.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "ingest/vdb/vdb_transform.h"
 #include "support/error_of.h"
+#include "volume/vdb_transform.h"
 
 namespace deltasplat {
 namespace {

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <random>
 
-#include "cameras/motion.h"
+#include "formats/cameras/motion.h"
+#include "formats/usd/usd_scene.h"
 #include "unit/camera_helpers.h"
-#include "usd/usd_scene.h"
 
 namespace deltasplat::test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "delta/value_mixer.h"
+#include "words/value_mixer.h"
 
 #include <gtest/gtest.h>
 

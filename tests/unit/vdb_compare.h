@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "ingest/grids/tree_types.h"
+#include "volume/tree_types.h"
 
 #include <gtest/gtest.h>
 

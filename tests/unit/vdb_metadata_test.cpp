@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ingest/vdb/vdb_metadata.h"
-#include "ingest/grids/tree_types.h"
+#include "volume/vdb_metadata.h"
+#include "volume/tree_types.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/util/Util.h>
@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "ingest/grids/grid_metadata.h"
+#include "formats/vdb/grid_metadata.h"
 
 namespace deltasplat {
 namespace {

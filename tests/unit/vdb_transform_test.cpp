@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ingest/vdb/vdb_transform.h"
-#include "ingest/grids/tree_types.h"
+#include "volume/vdb_transform.h"
+#include "volume/tree_types.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/io/Archive.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Grids that VdbFile::read() reads here have to be those that OpenVDB reads, inactive values,
 // tiles, metadata and transforms included: both are written again, and compared byte by byte.
-#include "ingest/vdb/vdb_tree.h"
-#include "ingest/grids/tree_types.h"
+#include "formats/vdb/vdb_tree.h"
+#include "volume/tree_types.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/io/Compression.h>
@@ -16,10 +16,10 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
-#include "ingest/vdb/vdb_file.h"
+#include "formats/vdb/vdb_file.h"
+#include "formats/vdb/write_vdb.h"
 #include "unit/convert_helpers.h"
 #include "unit/random_grid.h"
-#include "vdb/write_vdb.h"
 
 namespace deltasplat {
 namespace {

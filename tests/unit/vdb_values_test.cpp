@@ -12,13 +12,13 @@
 
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/threads.h"
-#include "ingest/grids/tree_types.h"
-#include "ingest/vdb/packed_values.h"
-#include "ingest/vdb/vdb_file.h"
+#include "formats/vdb/pack_values.h"
+#include "formats/vdb/packed_values.h"
+#include "formats/vdb/vdb_file.h"
 #include "support/same_volume.h"
 #include "unit/ingest_helpers.h"
 #include "unit/vdb_helpers.h"
-#include "vdb/pack_values.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat {
 namespace {

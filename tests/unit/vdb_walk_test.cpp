@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ingest/vdb/vdb_walk.h"
-#include "ingest/grids/tree_types.h"
+#include "formats/vdb/vdb_walk.h"
+#include "volume/tree_types.h"
 
 #include <gtest/gtest.h>
 
-#include "ingest/vdb/vdb_file.h"
+#include "formats/vdb/vdb_file.h"
 #include "unit/ingest_helpers.h"
 
 namespace deltasplat {

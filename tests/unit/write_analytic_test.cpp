@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/synth/write_analytic.h"
-#include "ingest/grids/tree_types.h"
+#include "volume/tree_types.h"
 
 #include <gtest/gtest.h>
 

@@ -8,12 +8,12 @@
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/ingest/label_list.h"
-#include "ingest/grids/tree_types.h"
-#include "ingest/length_unit.h"
-#include "ingest/read_compared.h"
+#include "formats/read_compared.h"
 #include "unit/convert_helpers.h"
 #include "unit/format_helpers.h"
 #include "unit/vdb_helpers.h"
+#include "volume/length_unit.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat::testing {
 namespace {

@@ -12,12 +12,12 @@
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/ingest/list_grids.h"
-#include "ingest/grids/tree_types.h"
-#include "ingest/length_unit.h"
 #include "unit/convert_helpers.h"
 #include "unit/format_helpers.h"
 #include "unit/vdb_compare.h"
 #include "unit/vdb_helpers.h"
+#include "volume/length_unit.h"
+#include "volume/tree_types.h"
 
 namespace deltasplat::testing {
 namespace {

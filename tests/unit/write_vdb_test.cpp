@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What writeVdb() writes has to be, to the last byte but the tag, what openvdb::io::File writes.
-#include "vdb/write_vdb.h"
-#include "ingest/grids/tree_types.h"
+#include "formats/vdb/write_vdb.h"
+#include "volume/tree_types.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -17,11 +17,11 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
-#include "ingest/delta/word_tree.h"
-#include "ingest/vdb/vdb_file.h"
+#include "formats/delta/word_tree.h"
+#include "formats/vdb/leaf_pieces.h"
+#include "formats/vdb/vdb_file.h"
 #include "unit/convert_helpers.h"
 #include "unit/random_grid.h"
-#include "vdb/leaf_pieces.h"
 
 namespace deltasplat {
 namespace {

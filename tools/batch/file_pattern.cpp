@@ -7,8 +7,8 @@
 #include <system_error>
 #include <utility>
 
-#include "ingest/images/image_stack.h"
-#include "ingest/name_signs.h"
+#include "formats/images/image_stack.h"
+#include "formats/name_signs.h"
 
 namespace deltasplat {
 namespace {

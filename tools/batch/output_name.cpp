@@ -9,7 +9,7 @@
 
 #include "deltasplat/error.h"
 #include "files/file_name.h"
-#include "ingest/name_signs.h"
+#include "formats/name_signs.h"
 
 namespace deltasplat {
 namespace {

@@ -8,7 +8,7 @@
 #include "base/affine.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
-#include "ingest/name_signs.h"
+#include "formats/name_signs.h"
 #include "options/command_line.h"
 #include "options/file_and_name.h"
 #include "sequence/frame_name.h"

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "ingest/box_voxels.h"
 #include "options/parse.h"
 #include "process/peak_bytes.h"
 #include "text/json_text.h"
+#include "volume/box_voxels.h"
 
 namespace deltasplat {
 

@@ -9,7 +9,7 @@
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/read_compared.h"
+#include "formats/read_compared.h"
 #include "optics/read_label_table.h"
 #include "options/input_options.h"
 #include "subcommands.h"

@@ -11,7 +11,7 @@
 #include "batch/file_pattern.h"
 #include "deltasplat/error.h"
 #include "deltasplat/slab_part.h"
-#include "ingest/name_signs.h"
+#include "formats/name_signs.h"
 #include "listener.h"
 #include "output_files.h"
 #include "process/interrupt.h"

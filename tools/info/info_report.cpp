@@ -7,8 +7,8 @@
 #include "deltasplat/ingest/label_list.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "info/sequence_report.h"
-#include "ingest/box_voxels.h"
 #include "text/json_text.h"
+#include "volume/box_voxels.h"
 #include "volume_place.h"
 
 namespace deltasplat {

@@ -8,11 +8,11 @@
 #include "deltasplat/ingest/label_list.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "info/info_report.h"
-#include "ingest/box_voxels.h"
 #include "options/parse.h"
 #include "options/volume_choices.h"
 #include "text/short_number.h"
 #include "text/text_line.h"
+#include "volume/box_voxels.h"
 #include "volume_place.h"
 
 namespace deltasplat {

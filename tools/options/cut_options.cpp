@@ -9,8 +9,8 @@
 
 #include "base/text.h"
 #include "deltasplat/error.h"
-#include "ingest/input_kind.h"
-#include "ingest/raw/raw_format.h"
+#include "formats/input_kind.h"
+#include "formats/raw/raw_format.h"
 #include "options/command_line.h"
 #include "options/file_and_name.h"
 #include "options/parse.h"

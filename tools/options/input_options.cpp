@@ -4,8 +4,8 @@
 #include <set>
 
 #include "deltasplat/error.h"
-#include "ingest/input_files.h"
-#include "ingest/input_kind.h"
+#include "formats/input_files.h"
+#include "formats/input_kind.h"
 
 namespace deltasplat {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "base/text.h"
 #include "deltasplat/error.h"
-#include "ingest/placement.h"
+#include "volume/placement.h"
 
 namespace deltasplat {
 namespace {

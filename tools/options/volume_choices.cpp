@@ -3,7 +3,7 @@
 
 #include "base/text.h"
 #include "deltasplat/error.h"
-#include "ingest/input_kind.h"
+#include "formats/input_kind.h"
 
 namespace deltasplat {
 namespace {

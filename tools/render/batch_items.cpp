@@ -12,7 +12,7 @@
 #include "batch/output_name.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "files/file_name.h"
-#include "ingest/input_files.h"
+#include "formats/input_files.h"
 #include "render/preview_file.h"
 
 namespace deltasplat {

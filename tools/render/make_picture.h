@@ -25,8 +25,7 @@ struct MadePicture {
 
 /// Reads the scene, unless it is there already.
 /// @throw as readScene
-ReadScene sceneOf(const RenderCommand& command, const SequencePart& part,
-                  const Listener& listener);
+ReadScene sceneOf(const RenderCommand& command, const SequencePart& part, const Listener& listener);
 
 /// Reads, renders and writes one picture, and its stats.
 MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const Session& session,

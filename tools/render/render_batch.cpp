@@ -19,7 +19,6 @@
 #include "deltasplat/threads.h"
 #include "flag_names.h"
 #include "image/thumbnail.h"
-#include "ingest/box_voxels.h"
 #include "listener.h"
 #include "output_files.h"
 #include "process/interrupt.h"
@@ -31,6 +30,7 @@
 #include "sequence/frame_name.h"
 #include "sequence/frames_to_make.h"
 #include "sequence/run_frames.h"
+#include "volume/box_voxels.h"
 
 namespace deltasplat {
 namespace {

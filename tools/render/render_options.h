@@ -19,6 +19,7 @@
 #include "deltasplat/render_aovs.h"
 #include "deltasplat/render_deep.h"
 #include "deltasplat/slab_part.h"
+#include "formats/usd/usd_volume.h"
 #include "listener.h"
 #include "options/command_line.h"
 #include "options/cut_options.h"
@@ -27,7 +28,6 @@
 #include "options/shading_options.h"
 #include "options/surface_options.h"
 #include "sequence/frame_options.h"
-#include "usd/usd_volume.h"
 
 namespace deltasplat {
 

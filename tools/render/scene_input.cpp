@@ -3,9 +3,9 @@
 
 #include "base/text.h"
 #include "deltasplat/error.h"
-#include "ingest/length_unit.h"
-#include "ingest/placement.h"
 #include "options/file_and_name.h"
+#include "volume/length_unit.h"
+#include "volume/placement.h"
 
 namespace deltasplat {
 namespace {

@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
-#include "ingest/name_signs.h"
+#include "formats/name_signs.h"
 #include "render/color_options.h"
 #include "render/render_modes.h"
 #include "render/tone_options.h"

@@ -11,8 +11,8 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "ingest/input_files.h"
-#include "ingest/input_kind.h"
+#include "formats/input_files.h"
+#include "formats/input_kind.h"
 #include "options/input_options.h"
 #include "subcommands.h"
 

@@ -8,10 +8,10 @@
 #include <system_error>
 #include <utility>
 
-#include "ingest/images/image_stack.h"
-#include "ingest/input_files.h"
-#include "ingest/input_kind.h"
-#include "ingest/name_signs.h"
+#include "formats/images/image_stack.h"
+#include "formats/input_files.h"
+#include "formats/input_kind.h"
+#include "formats/name_signs.h"
 
 namespace deltasplat {
 namespace {

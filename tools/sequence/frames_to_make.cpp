@@ -9,9 +9,9 @@
 
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
+#include "formats/input_files.h"
+#include "formats/input_kind.h"
 #include "image/thumbnail.h"
-#include "ingest/input_files.h"
-#include "ingest/input_kind.h"
 #include "output_files.h"
 #include "process/run_log.h"
 

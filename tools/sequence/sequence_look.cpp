@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/sequence_look.h"
-#include "ingest/placement.h"
+#include "volume/placement.h"
 
 #include <algorithm>
 #include <bit>
@@ -16,8 +16,8 @@
 #include "base/affine.h"
 #include "deltasplat/error.h"
 #include "files/checked_json.h"
-#include "ingest/codes/code_tree.h"
-#include "ingest/grids/grid_metadata.h"
+#include "formats/vdb/grid_metadata.h"
+#include "volume/code_tree.h"
 
 namespace deltasplat {
 namespace {

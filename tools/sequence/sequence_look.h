@@ -12,7 +12,7 @@
 
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/view/world_box.h"
-#include "ingest/placement.h"
+#include "volume/placement.h"
 
 namespace deltasplat {
 

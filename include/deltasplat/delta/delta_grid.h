@@ -11,7 +11,8 @@
 
 namespace deltasplat {
 
-/// The OpenVDB Int32Grid of deltas; defined in src/delta/delta_grid.h for the stage that walks it.
+/// The OpenVDB Int32Grid of deltas; defined in src/formats/delta/delta_grid.h for the stage that
+/// walks it.
 struct DeltaTree;
 
 /// A run of slices that can be read on its own, because its first slice is a key slice.

@@ -20,4 +20,7 @@ struct Image {
     const float* pixel(int x, int y) const { return &rgba[4 * (std::size_t(y) * size.x + x)]; }
 };
 
+/// Depth of a pixel in which nothing is seen, as Cycles has it.
+inline constexpr float kNoDepth = 1e10f;
+
 }  // namespace deltasplat

@@ -60,7 +60,7 @@ struct ReadOptions {
     /// Real values: a linear code book of 2^bits codes, 8..16. Empty: an exact book if there is
     /// one (at most 65536 different values), otherwise one that keeps every value within 2e-4 of
     /// itself, and of its neighbours' range, as far as 65536 codes allow
-    /// (src/ingest/codes/fitted_book.h).
+    /// (src/volume/fitted_book.h).
     std::optional<int> bits;
     /// Values of more than 65536 kinds: each kept within this share (0..1, exclusive) of its
     /// magnitude (a quarter of it, if possible), where 65536 codes are enough for that. Empty, or

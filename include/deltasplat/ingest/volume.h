@@ -16,10 +16,10 @@
 
 namespace deltasplat {
 
-/// The OpenVDB tree of codes; defined in src/ingest/codes/code_tree.h for the stages that walk it.
+/// The OpenVDB tree of codes; defined in src/volume/code_tree.h for the stages that walk it.
 struct CodeTree;
 
-/// The source's own grid of values; defined in src/ingest/grids/tree_grid.h.
+/// The source's own grid of values; defined in src/volume/tree_grid.h.
 struct SourceGrid;
 
 /// Names and looks of labels; defined in deltasplat/ingest/label_list.h.

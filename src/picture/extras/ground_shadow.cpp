@@ -3,7 +3,7 @@
 // the light is says what is lit). What fog lets through takes the place of depths, for all of it
 // lies before the plane.
 #include "picture/extras/ground_shadow.h"
-#include "ingest/placement.h"
+#include "volume/placement.h"
 
 #include <algorithm>
 #include <array>

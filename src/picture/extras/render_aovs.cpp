@@ -15,11 +15,11 @@
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/prepared_scene.h"
-#include "image/depth_builder.h"
 #include "picture/far_groups.h"
 #include "picture/picture_view.h"
 #include "picture/prepared_axis.h"
 #include "picture/sheet_plan.h"
+#include "screen/depth_builder.h"
 
 namespace deltasplat {
 namespace {

@@ -20,10 +20,10 @@
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/render_deep.h"
-#include "image/clear_image.h"
-#include "image/deep_builder.h"
 #include "picture/picture_view.h"
 #include "picture/prepared_axis.h"
+#include "screen/clear_image.h"
+#include "screen/deep_builder.h"
 
 namespace deltasplat {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "deltasplat/progress.h"
-#include "image/deep_builder.h"
 #include "picture/picture_view.h"
+#include "screen/deep_builder.h"
 
 namespace deltasplat {
 

@@ -10,10 +10,10 @@
 #include "base/memory.h"
 #include "deltasplat/error.h"
 #include "deltasplat/slab_part.h"
-#include "image/clear_image.h"
 #include "picture/parts/part_header.h"
 #include "picture/parts/slab_file.h"
 #include "picture/plane_view.h"
+#include "screen/clear_image.h"
 
 namespace deltasplat {
 namespace {

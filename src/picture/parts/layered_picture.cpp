@@ -10,7 +10,7 @@
 #include "base/memory.h"
 #include "deltasplat/error.h"
 #include "deltasplat/layered_picture.h"
-#include "image/clear_image.h"
+#include "screen/clear_image.h"
 
 namespace deltasplat {
 

@@ -8,9 +8,9 @@
 #include "base/default_floats.h"
 #include "base/kept_memory.h"
 #include "base/progress.h"
-#include "image/clear_image.h"
 #include "picture/kept_view.h"
 #include "picture/plane_view.h"
+#include "screen/clear_image.h"
 
 namespace deltasplat {
 struct PartedPicture::Impl {

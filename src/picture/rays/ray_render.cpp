@@ -16,13 +16,13 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "deltasplat/threads.h"
-#include "image/clear_image.h"
 #include "picture/empty_picture.h"
 #include "picture/far_groups.h"
 #include "picture/rays/ray_picture.h"
 #include "rays/line_group.h"
 #include "rays/picture_lines.h"
 #include "rays/ray_follower.h"
+#include "screen/clear_image.h"
 
 namespace deltasplat {
 namespace {

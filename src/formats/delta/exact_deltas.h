@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "deltasplat/ingest/volume.h"
+#include "formats/delta/exact_slots.h"
+#include "formats/delta/inactive_values.h"
+#include "volume/tree_grid.h"
+
+namespace deltasplat {
+
+/// What a grid's own values become, slice by slice.
+struct ExactDeltas {
+    std::shared_ptr<openvdb::TreeBase> deltas;  ///< zigzag numbers, in (slice, u, v) order
+    std::vector<std::uint64_t> slabDeltas;      ///< deltas of each slab
+};
+
+/// How to take them.
+struct ExactDeltaOptions {
+    int sliceAxis = 2;
+    int keyInterval = 8;  ///< a multiple of 8
+    IndexBox box;         ///< holds all active voxels and `inactive`
+    /// The value of active voxels that are not spoken of, in a volume without empty places.
+    std::optional<double> rest;
+    const InactiveValues& inactive;
+};
+
+/// Returns how a grid's values can be stored by their own bits; empty if its type has no such code
+/// book, or one of its values no slot.
+std::optional<ExactValues> exactValuesOf(const TreeGrid& grid);
+
+/// Takes the differences of consecutive slices. Multi-threaded; deterministic. Memory grows with
+/// the active voxels and the surface of tiles.
+/// @param grid  exactValuesOf it; active values are finite
+/// @param where  for messages
+/// @throw Error(kFailed) if they do not fit into memory
+ExactDeltas takeExactDeltas(const TreeGrid& grid, const ExactDeltaOptions& options,
+                            const std::string& where);
+
+}  // namespace deltasplat

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/delta/restored_grid.h"
+
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "deltasplat/error.h"
+#include "volume/prune_same_bits.h"
+#include "volume/tree_from_codes.h"
+#include "volume/value_cast.h"
+#include "volume/vdb_transform.h"
+
+namespace deltasplat {
+namespace {
+
+// Sets what inactive voxels hold where that is not the background, and makes tiles of what is
+// uniform.
+template <typename Tree>
+void setInactive(const CodeTree::Tree& inactive, const std::vector<double>& values, Tree& tree) {
+    openvdb::tree::ValueAccessor<Tree> accessor(tree);
+    const auto valueOf = [&](Code number) {
+        return valueAs<typename Tree::ValueType>(values[number]);
+    };
+    for (auto leaf = inactive.cbeginLeaf(); leaf; ++leaf) {
+        for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel)
+            accessor.setValueOff(voxel.getCoord(), valueOf(*voxel));
+    }
+    auto tile = inactive.cbeginValueOn();
+    tile.setMaxDepth(CodeTree::Tree::ValueOnCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile) accessor.addTile(1, tile.getCoord(), valueOf(*tile), false);
+    pruneSameBits(tree);
+}
+
+std::shared_ptr<openvdb::TreeBase> restoredTree(const DeltaHeader& header,
+                                                const DecodedDeltas& decoded) {
+    std::shared_ptr<openvdb::TreeBase> restored;
+    applyType(ScalarTrees(), header.sourceTree, [&]<typename Tree>(std::type_identity<Tree>) {
+        auto tree = treeFromCodes<Tree>(decoded.codes->tree(), header.book,
+                                        valueAs<typename Tree::ValueType>(header.background));
+        setInactive(decoded.inactive->tree(), header.inactiveValues, *tree);
+        restored = std::move(tree);
+    });
+    return restored;
+}
+
+// Returns the source's own metadata under their names.
+VdbMetadata sourceMetadata(const VdbMetadata& stored) {
+    const std::string_view prefix = kSourcePrefix;
+    VdbMetadata own;
+    for (const auto& [name, entry] : stored.entries()) {
+        if (name.starts_with(prefix) && name.size() > prefix.size())
+            own.insert(name.substr(prefix.size()), entry);
+    }
+    return own;
+}
+
+// Gives a tree all of the source but its voxels.
+TreeGrid dressed(std::shared_ptr<openvdb::TreeBase> tree, const TreeGrid& deltas,
+                 const DeltaHeader& header, const glm::dmat4& worldFromIndex) {
+    return {std::move(tree), sourceMetadata(deltas.metadata),
+            makeMapOfType(header.sourceMap, worldFromIndex)};
+}
+
+}  // namespace
+
+TreeGrid restoreGrid(const DeltaHeader& header, const DecodedDeltas& decoded,
+                     const TreeGrid& deltas, const glm::dmat4& worldFromIndex) {
+    return dressed(restoredTree(header, decoded), deltas, header, worldFromIndex);
+}
+
+TreeGrid restoreGrid(const DeltaHeader& header, const DecodedValues& decoded,
+                     const TreeGrid& deltas, const glm::dmat4& worldFromIndex) {
+    TreeGrid grid = header.sourceTree.empty()
+                        ? TreeGrid{decoded.values, {}, makeMapIfAny(worldFromIndex)}
+                        : dressed(decoded.values, deltas, header, worldFromIndex);
+    if (header.sourceTree.empty())
+        grid.metadata.insert(openvdb::GridBase::META_GRID_NAME, deltas.name());
+    grid.apply<ExactTrees>(
+        [&](auto& tree) { setInactive(decoded.inactive->tree(), header.inactiveValues, tree); });
+    return grid;
+}
+
+void requireActiveCount(std::uint64_t active, const DeltaHeader& header, const std::string& where) {
+    if (active == header.active) return;
+    throw Error(ErrorCode::kInput,
+                gotExpected(where, std::to_string(active) + " active voxels",
+                            std::to_string(header.active) + ", as \"delta_active\" says"));
+}
+
+}  // namespace deltasplat

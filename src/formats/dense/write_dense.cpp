@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/dense/write_dense.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <glm/vector_relational.hpp>
+#include <memory>
+#include <optional>
+#include <system_error>
+#include <vector>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/text.h"
+#include "deltasplat/error.h"
+#include "files/file_name.h"
+#include "formats/dense/dense_layout.h"
+#include "formats/dense/dense_values.h"
+#include "formats/dense/value_facts.h"
+#include "formats/packed_output.h"
+#include "formats/vdb/grid_metadata.h"
+#include "volume/box_voxels.h"
+#include "volume/tree_grid.h"
+#include "volume/tree_types.h"
+
+namespace deltasplat {
+namespace {
+
+constexpr int kBlock = 8;
+
+bool contains(const IndexBox& outer, const IndexBox& inner) {
+    return glm::all(glm::lessThanEqual(outer.min, inner.min)) &&
+           glm::all(glm::greaterThanEqual(outer.max, inner.max));
+}
+
+// Returns the voxels to write: those of the file that a grid was made from, if it was made so.
+IndexBox boxOf(const Volume& volume) {
+    if (!volume.source) return volume.box;
+    const VdbMetadata& metadata = volume.source->grid.metadata;
+    const auto min = metadata.get<glm::ivec3>(kBoxMinKey);
+    const auto max = metadata.get<glm::ivec3>(kBoxMaxKey);
+    if (!min || !max) return volume.box;
+    const IndexBox box{*min, *max};
+    constexpr double kMostVoxels = 0x1p62;  // as readers have it
+    const glm::dvec3 sides = glm::dvec3(*max) - glm::dvec3(*min) + 1.0;
+    const bool sound = !box.empty() && sides.x * sides.y * sides.z <= kMostVoxels;
+    return sound && (volume.empty() || contains(box, volume.box)) ? box : volume.box;
+}
+
+void requireVoxels(const std::filesystem::path& file, const Volume& volume, const IndexBox& box) {
+    if (!box.empty()) return;
+    throw Error(ErrorCode::kInput,
+                gotExpected(file.string(), "\"" + volume.name + "\", which has no active voxels",
+                            "a volume with a bounding box (.vdb holds empty ones)"));
+}
+
+// Returns the file's name, and of a box that is nearly empty what it would take.
+std::string whatIsWritten(const std::filesystem::path& file, const Volume& volume,
+                          const IndexBox& box, double bytes) {
+    constexpr double kNearlyEmpty = 1000;
+    if (double(voxelsOf(box)) <
+        kNearlyEmpty * double(std::max<std::uint64_t>(volume.activeCount, 1)))
+        return file.string();
+    const glm::ivec3 dims = box.dims();
+    return file.string() + ": " + std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" +
+           std::to_string(dims.z) + " voxels, " + humanBytes(bytes) + ", of which " +
+           std::to_string(volume.activeCount) + " are active (a .vdb stores those alone)";
+}
+
+// Space on the disk is asked for before hours of work, as far as it can be known.
+void requireSpace(const std::filesystem::path& file, const std::string& what,
+                  const DenseFormat& format, double bytes) {
+    constexpr double kMostPacking = 1032;  // zlib's best
+    const double least = format.gzipData ? bytes / kMostPacking : bytes;
+    std::error_code error;
+    const std::filesystem::path folder = absolute(file, error).parent_path();
+    const std::filesystem::space_info space = std::filesystem::space(folder, error);
+    if (error || least <= double(space.available)) return;
+    throw Error(ErrorCode::kOutput, what + ": cannot be written: needs " + humanBytes(least) +
+                                        "; expected at most " +
+                                        humanBytes(double(space.available)) + ", which is free");
+}
+
+void noteLostStates(const Volume& volume, const IndexBox& box, Notes& notes) {
+    if (!volume.hasBackground) return;
+    const std::uint64_t inactive = voxelsOf(box) - volume.activeCount;
+    if (inactive != 0) {
+        notes.loss(
+            countText(inactive,
+                      "inactive voxel becomes a voxel like the others, with the value it holds",
+                      "inactive voxels become voxels like the others, with the value they "
+                      "hold") +
+            " (background " + numberText(volume.background) + ")");
+    }
+    // What was no grid before has no more than its file's name.
+    if (volume.source && !volume.source->grid.metadata.text(kSourceTypeKey).empty()) return;
+    notes.loss("the grid's name \"" + volume.name + "\", class \"" + volume.gridClass +
+               "\" and other metadata are left out");
+}
+
+DenseLayout layoutOf(const Volume& volume, const IndexBox& box, const ValueFacts& facts,
+                     const DenseFormat& format, Notes& notes) {
+    DenseLayout layout;
+    layout.dims = box.dims();
+    layout.type = denseType(volume, facts, format.wideIntegers, notes);
+    layout.worldFromIndex = volume.worldFromIndex;
+    layout.worldFromIndex[3] = volume.worldFromIndex * glm::dvec4(box.min, 1);
+    layout.space = volume.space;
+    layout.lengthUnit = volume.lengthUnit;
+    layout.labels = volume.labels;
+    return layout;
+}
+
+void swapBytes(std::vector<std::byte>& data, std::size_t size) {
+    for (auto value = data.begin(); value != data.end(); value += std::ptrdiff_t(size))
+        std::reverse(value, value + std::ptrdiff_t(size));
+}
+
+// A run of slices that lie in the same layer of 8x8x8 blocks, as bytes of the file.
+class Layer {
+  public:
+    Layer(const IndexBox& box, RawType type, bool bigEndian)
+        : box_(box),
+          type_(type),
+          bigEndian_(bigEndian),
+          rowBytes_(std::size_t(box.dims().x) * rawTypeBytes(type)) {}
+
+    double bytes() const { return double(rowBytes_) * box_.dims().y * box_.dims().z; }
+    const std::vector<std::byte>& data() const { return data_; }
+
+    /// Fills the layer on all threads; returns the largest error.
+    template <typename Value>
+    double fill(const ReadBox<Value>& read) {
+        data_.resize(rowBytes_ * std::size_t(box_.dims().y) * std::size_t(box_.dims().z));
+        const int firstStrip = box_.min.y & ~(kBlock - 1);
+        std::vector<double> errors(std::size_t((box_.max.y - firstStrip) / kBlock + 1));
+        parallelFor(errors.size(), [&](std::size_t strip) {
+            IndexBox part = box_;
+            part.min.y = std::max(box_.min.y, firstStrip + int(strip) * kBlock);
+            part.max.y = std::min(box_.max.y, firstStrip + int(strip) * kBlock + kBlock - 1);
+            errors[strip] = fillStrip(part, read);
+        });
+        if (bigEndian_) swapBytes(data_, rawTypeBytes(type_));
+        return *std::max_element(errors.begin(), errors.end());
+    }
+
+  private:
+    template <typename Value>
+    double fillStrip(const IndexBox& part, const ReadBox<Value>& read) {
+        const auto width = std::size_t(part.dims().x);
+        const auto values = std::make_unique_for_overwrite<Value[]>(std::size_t(part.voxels()));
+        read(part, values.get());
+        const Value* row = values.get();
+        double error = 0;
+        for (int z = 0; z < part.dims().z; ++z) {
+            for (int y = part.min.y - box_.min.y; y <= part.max.y - box_.min.y; ++y, row += width) {
+                std::byte* out =
+                    data_.data() +
+                    (std::size_t(z) * std::size_t(box_.dims().y) + std::size_t(y)) * rowBytes_;
+                error = std::max(error, storeValues(row, width, type_, out));
+            }
+        }
+        return error;
+    }
+
+    IndexBox box_;
+    RawType type_;
+    bool bigEndian_;
+    std::size_t rowBytes_;
+    std::vector<std::byte> data_;
+};
+
+template <typename Value>
+double writeValues(const ReadBox<Value>& read, const IndexBox& box, const DenseLayout& layout,
+                   PackedOutput& out, const Listener& listener) {
+    double error = 0;
+    for (int first = box.min.z; first <= box.max.z; first = (first & ~(kBlock - 1)) + kBlock) {
+        IndexBox slices = box;
+        slices.min.z = first;
+        slices.max.z = std::min(box.max.z, first | (kBlock - 1));
+        Layer layer(slices, layout.type, layout.bigEndian);
+        error = std::max(error, layer.fill(read));
+        out.write(layer.data().data(), layer.data().size());
+        listener.report(double(slices.max.z - box.min.z + 1) / box.dims().z);
+    }
+    return error;
+}
+
+}  // namespace
+
+WriteReport writeDense(const std::filesystem::path& file, const DenseFormat& format,
+                       const Volume& volume, const Listener& listener) {
+    const IndexBox box = boxOf(volume);
+    requireVoxels(file, volume, box);
+    WriteReport report;
+    Notes notes(report, file);
+    const ValueFacts facts = factsOf(volume);
+    DenseLayout layout = layoutOf(volume, box, facts, format, notes);
+    format.settle(layout, file.string(), notes);
+    noteLostStates(volume, box, notes);
+    const double sliceBytes = double(layout.dims.x) * layout.dims.y * rawTypeBytes(layout.type);
+    const std::string what = whatIsWritten(file, volume, box, sliceBytes * layout.dims.z);
+    requireMemory(what, 2 * kBlock * sliceBytes);
+    requireSpace(file, what, format, sliceBytes * layout.dims.z);
+
+    const std::filesystem::path dataFile = dataFileOf(file);
+    PackedOutput head(file);
+    std::optional<PackedOutput> separate;
+    if (!dataFile.empty()) separate.emplace(dataFile);
+    PackedOutput& data = separate ? *separate : head;
+
+    if (format.gzipHeader) head.beginGzip();
+    const std::string header = format.header(layout, dataFile.filename().string());
+    head.write(header.data(), header.size());
+    if (format.gzipData && !format.gzipHeader) data.beginGzip();
+    const bool isWide = layout.type == RawType::kInt64 || layout.type == RawType::kUint64;
+    const ReadBox<std::int64_t> integers = isWide ? integerReader(volume) : nullptr;
+    report.maxError = integers ? writeValues(integers, box, layout, data, listener)
+                               : std::max(facts.doubleError, writeValues(boxReader(volume), box,
+                                                                         layout, data, listener));
+
+    head.close();
+    data.close();
+    if (separate) {
+        head.commitWithData(*separate);
+    } else {
+        head.commit();
+    }
+    report.files = {file};
+    if (separate) report.files.push_back(dataFile);
+    if (report.maxError != 0) report.lossless = false;
+    return report;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: the OpenEXR project, "OpenEXR File Layout"; Microsoft's BITMAPINFOHEADER.
+#include "formats/images/image_claims.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "base/memory.h"
+#include "deltasplat/error.h"
+#include "deltasplat/threads.h"
+#include "files/file_bytes.h"
+#include "files/file_name.h"
+#include "formats/images/jpeg_frame.h"
+#include "formats/images/tiff_pages.h"
+#include "formats/input_kind.h"
+
+namespace deltasplat {
+namespace {
+
+void requireEnough(const std::string& where, const FileBytes& file, double ratio, double width,
+                   double height, double pixelBytes) {
+    if (isEnough(double(file.size()), ratio, width * height * pixelBytes)) return;
+    throw Error(ErrorCode::kInput,
+                gotExpected(where, std::to_string(file.size()) + " bytes",
+                            "enough for " + std::to_string(std::int64_t(width)) + "x" +
+                                std::to_string(std::int64_t(height)) + " pixels"));
+}
+
+// Takes numbers and texts from a file, one behind the other; zeros once it has ended.
+class Reader {
+  public:
+    explicit Reader(const FileBytes& file) : file_(file) {}
+
+    bool ended() const { return place_ > file_.size(); }
+    void skip(std::uint64_t bytes) {
+        place_ =
+            bytes <= file_.size() && place_ <= file_.size() ? place_ + bytes : file_.size() + 1;
+    }
+    std::uint8_t byte() {
+        if (place_ < begin_ || place_ >= begin_ + length_) {
+            begin_ = place_;
+            length_ = ended() ? 0 : file_.read(place_, bytes_.data(), bytes_.size());
+        }
+        const std::uint8_t value = length_ > 0 ? bytes_[std::size_t(place_ - begin_)] : 0;
+        if (!ended()) ++place_;
+        return value;
+    }
+    // The first byte counts least.
+    std::uint32_t number(int bytes) {
+        std::uint32_t value = 0;
+        for (int i = 0; i < bytes; ++i) value |= std::uint32_t(byte()) << (8 * i);
+        return value;
+    }
+    // A text that ends with 0; ones of more than 255 bytes there are not in these files.
+    std::string text() {
+        std::string text;
+        for (char c = char(byte()); c != 0; c = char(byte())) {
+            text += c;
+            if (text.size() > 255) skip(file_.size());
+        }
+        return text;
+    }
+
+  private:
+    const FileBytes& file_;
+    std::uint64_t place_ = 0;
+    std::array<std::uint8_t, 4096> bytes_{};  // those that were read last
+    std::uint64_t begin_ = 0;
+    std::size_t length_ = 0;
+};
+
+// One picture of an .exr, by its header.
+struct ExrPart {
+    double width = 0, height = 0;
+    double pixelBytes = 0;
+    std::size_t compression = 0;
+    bool isDeep = false;
+    std::optional<std::array<double, 2>> tile;
+
+    // Of its kinds of packing, lines of a block, and the most bytes that one unpacks to.
+    static constexpr std::array<double, 10> kLines{1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+    static constexpr std::array<double, 10> kRatios{1,    64, 1032, 1032,   0x1p13,
+                                                    1376, 16, 16,   0x1p13, 0x1p13};
+};
+
+void readExrChannels(Reader& reader, ExrPart& part) {
+    while (!reader.ended() && !reader.text().empty()) {
+        const std::uint32_t type = reader.number(4);
+        reader.skip(12);
+        part.pixelBytes += type == 1 ? 2 : 4;  // halves, or floats and whole numbers
+    }
+}
+
+// Returns nothing behind the last part.
+std::optional<ExrPart> readExrPart(Reader& reader) {
+    ExrPart part;
+    bool isAny = false;
+    for (std::string name = reader.text(); !name.empty(); name = reader.text()) {
+        isAny = true;
+        reader.text();
+        const std::uint32_t bytes = reader.number(4);
+        Reader value = reader;
+        reader.skip(bytes);
+        if (reader.ended()) return {};
+        if (name == "channels") readExrChannels(value, part);
+        if (name == "compression") part.compression = value.number(1);
+        // Of samples nobody knows how many there are, but of each pixel their number is stored.
+        if (name == "type") part.isDeep = value.text().starts_with("deep");
+        if (name == "tiles") part.tile = {double(value.number(4)), double(value.number(4))};
+        if (name != "dataWindow") continue;
+        const auto left = std::int32_t(value.number(4)), top = std::int32_t(value.number(4));
+        part.width = double(std::int32_t(value.number(4))) - left + 1;
+        part.height = double(std::int32_t(value.number(4))) - top + 1;
+    }
+    if (!isAny) return {};
+    if (part.isDeep) part.pixelBytes = 4;
+    return part;
+}
+
+// OpenEXR keeps a block as it is stored, as it is unpacked and between, two for each thread.
+bool requireExr(const std::string& where, const FileBytes& file) {
+    constexpr double kTimes = 3;
+    constexpr double kMuch = double(64 << 20);
+    constexpr std::uint32_t kManyParts = 0x1000;
+    Reader reader(file);
+    reader.skip(4);
+    const bool isMany = (reader.number(4) & kManyParts) != 0;
+    bool mayThread = true;
+    do {
+        const std::optional<ExrPart> part = readExrPart(reader);
+        if (!part || part->compression >= ExrPart::kLines.size()) return mayThread;
+        const double lines = ExrPart::kLines[part->compression];
+        const double width = part->tile ? (*part->tile)[0] : part->width;
+        const double height = part->tile ? (*part->tile)[1] : lines;
+        requireEnough(where, file, ExrPart::kRatios[part->compression], part->width, part->height,
+                      part->pixelBytes);
+        const double block = kTimes * width * height * part->pixelBytes;
+        const double blocks = std::max(1, 2 * threadCount());
+        const double picture = part->width * part->height * part->pixelBytes;
+        if (block * blocks > std::max(kMuch, picture)) mayThread = false;
+        requireClaimedMemory(where, block * (mayThread ? blocks : 1));
+    } while (isMany && !reader.ended());
+    return mayThread;
+}
+
+// What comes in several passes is held whole.
+void requireJpeg(const std::string& where, const FileBytes& file) {
+    constexpr int kLastOfOnePass = 0xc1;
+    Reader reader(file);
+    const std::optional<JpegFrame> frame = findJpegFrame([&] {
+        const int byte = reader.byte();
+        return reader.ended() ? -1 : byte;
+    });
+    if (!frame) return;
+    requireEnough(where, file, mostRatio(""), frame->columns, frame->rows, frame->components);
+    if (frame->marker > kLastOfOnePass) {
+        requireClaimedMemory(where, 2.0 * frame->columns * double(frame->rows) * frame->components);
+    }
+}
+
+// Runs of one colour are unpacked at once.
+void requireBmp(const std::string& where, const FileBytes& file) {
+    Reader reader(file);
+    reader.skip(18);
+    const double width = std::abs(double(std::int32_t(reader.number(4))));
+    const double height = std::abs(double(std::int32_t(reader.number(4))));
+    reader.skip(4);
+    const std::uint32_t packing = reader.number(4);
+    if (!reader.ended() && packing != 0)
+        requireEnough(where, file, mostRatio(""), width, height, 1);
+}
+
+}  // namespace
+
+double mostRatio(const std::string& packing) {
+    if (packing == "none") return 8;  // single bits become bytes
+    if (packing == "zstd") return 0x1p15;
+    if (packing.rfind("ccitt", 0) == 0) return 0x1p18;
+    return 0x1p13;
+}
+
+bool isEnough(double packedBytes, double ratio, double unpackedBytes) {
+    constexpr double kOthers = 1024;  // so many bytes may stand elsewhere
+    return unpackedBytes <= (packedBytes + kOthers) * ratio;
+}
+
+bool requireClaims(const std::filesystem::path& file) {
+    if (isTiffName(file)) {
+        walkTiff(file);
+        return true;
+    }
+    const std::string extension = lowerExtension(file);
+    const FileBytes bytes(file);
+    if (extension == ".exr") return requireExr(file.string(), bytes);
+    if (extension == ".jpg" || extension == ".jpeg") requireJpeg(file.string(), bytes);
+    if (extension == ".bmp") requireBmp(file.string(), bytes);
+    return true;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/raw/raw_file.h"
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <memory>
+
+#include "base/memory.h"
+#include "base/text.h"
+#include "deltasplat/error.h"
+#include "files/file_bytes.h"
+#include "files/file_name.h"
+#include "formats/dense/dense_source.h"
+#include "formats/readers.h"
+
+namespace deltasplat {
+
+namespace {
+
+std::string expectedSize(const RawFile& file) {
+    const RawLayout& layout = file.layout;
+    if (file.volumes == 1) return layout.expectedSize();
+    return std::to_string(layout.skipBytes + file.dataBytes()) + " (" +
+           std::to_string(layout.skipBytes) + " skipped + " + std::to_string(file.volumes) +
+           " volumes of " + dimsText(layout.dims) + " " + rawTypeName(layout.type) + ")";
+}
+
+[[noreturn]] void throwSize(const RawFile& file, const std::string& got) {
+    const std::string least = file.mayGoOn ? "at least " : "";
+    throw Error(ErrorCode::kInput,
+                gotExpected(file.path.string(), got, least + expectedSize(file)));
+}
+
+[[noreturn]] void throwSize(const RawFile& file, std::uint64_t bytes) {
+    throwSize(file, countText(bytes, "byte") + (file.isPacked() ? " unpacked" : ""));
+}
+
+enum class PackedEnd { kIsChecked, kIsKnown };
+
+// What follows the last voxel says that the dims are wrong: count it for the message. A gzip stream
+// is known to be sound only at its end.
+void requireEnd(const RawFile& file, ByteSource& source, std::uint64_t done,
+                const std::function<void()>& beat) {
+    constexpr std::uint64_t kMostTail = std::uint64_t{1} << 24;
+    const std::uint64_t later = source.skip(file.laterBytes(), beat);
+    if (later != file.laterBytes()) throwSize(file, done + later);
+    const std::uint64_t more =
+        source.skip(file.mayGoOn ? kMostTail : std::numeric_limits<std::uint64_t>::max(), beat);
+    if (more != 0 && !file.mayGoOn) throwSize(file, done + later + more);
+}
+
+// @param bytes  of the file
+// @param step   slices at a time
+void readLayers(const RawFile& file, const std::shared_ptr<const FileBytes>& bytes, int step,
+                PackedEnd end, const DenseSource::LayerUse& use, const Listener& listener) {
+    // What lies before the volume is passed over, where it is not packed without being read.
+    ByteSource source(bytes, file.isPacked() ? file.packedStart : file.start(), file.packing);
+    const auto beat = [&](double share) { return [&listener, share] { listener.report(share); }; };
+    std::uint64_t done = file.isPacked() ? source.skip(file.start(), beat(0)) : file.start();
+    const int slices = int(file.layout.dims.z);
+    const std::size_t sliceBytes = std::size_t(file.layout.dims.x) *
+                                   std::size_t(file.layout.dims.y) *
+                                   std::size_t(rawTypeBytes(file.layout.type));
+    requireMemory(file.path.string(), double(sliceBytes) * step);
+    const auto layer = std::make_unique_for_overwrite<std::byte[]>(sliceBytes * std::size_t(step));
+    for (int first = 0; first < slices; first += step) {
+        const int count = std::min(step, slices - first);
+        const std::size_t wanted = sliceBytes * std::size_t(count);
+        const std::size_t got = source.read(layer.get(), wanted);
+        done += got;
+        if (got != wanted) throwSize(file, done);
+        use(first, count, layer.get());
+        listener.report(double(first + count) / slices);
+    }
+    // The size of a plain file has been looked at.
+    const bool known = file.isPacked() ? end == PackedEnd::kIsKnown : file.volumes > 1;
+    if (!known) requireEnd(file, source, done, beat(1));
+}
+
+}  // namespace
+
+void requireRawSize(const RawFile& file) {
+    const std::uint64_t held =
+        file.bytes ? file.bytes->size() : std::filesystem::file_size(file.path);
+    const std::uint64_t wanted = file.layout.skipBytes + file.dataBytes();
+    if (!file.isPacked()) {
+        if (held < wanted || (held > wanted && !file.mayGoOn)) throwSize(file, held);
+        return;
+    }
+    // Deflate makes at most 1032 bytes of one. What more is claimed is a lie, not a need of memory.
+    constexpr double kMostRatio = 1032;
+    if (double(held) * kMostRatio < double(wanted)) {
+        throwSize(file, std::to_string(held) + " bytes of gzip");
+    }
+}
+
+DenseSource denseSourceOf(const RawFile& file) {
+    DenseSource source;
+    source.where = file.path.string();
+    source.name = nameWithoutExtensions(file.path);
+    source.dims = file.layout.dims;
+    source.type = file.layout.type;
+    source.bigEndian = file.layout.bigEndian;
+    source.volumes = file.volumes;
+    source.step = source.enoughSlices();
+    const auto bytes = file.bytes ? file.bytes : std::make_shared<const FileBytes>(file.path);
+    source.forEachLayer = [file, bytes, step = source.stepSlices(),
+                           checked = std::make_shared<bool>(false)](
+                              const DenseSource::LayerUse& use, const Listener& listener) {
+        readLayers(file, bytes, step, *checked ? PackedEnd::kIsKnown : PackedEnd::kIsChecked, use,
+                   listener);
+        *checked = true;
+    };
+    if (!file.isPacked())
+        source.rows = std::make_shared<const StoredRows>(bytes, file.start(), source.rowBytes(),
+                                                         source.dims.y);
+    return source;
+}
+
+DenseSource openRaw(const std::filesystem::path& path, const RawFormat& format) {
+    RawFile file{path, resolveRawLayout(path, format)};
+    requireRegularFile(path);
+    // What it begins with tells, but that values may begin as gzip does, and a packed file be cut
+    // or damaged: then name and size do.
+    const bool named = lowerExtension(path) == ".raw.gz";
+    const std::uint64_t plain = file.layout.skipBytes + file.layout.dataBytes();
+    const bool fits = std::filesystem::file_size(path) == plain;
+    file.packing = named != fits ? (named ? Packing::kGzip : Packing::kNone) : packingOf(path);
+    requireRawSize(file);
+    DenseSource source = denseSourceOf(file);
+    source.worldFromIndex = glm::scale(glm::translate(glm::dmat4(1), format.origin),
+                                       format.spacing.value_or(glm::dvec3(1)));
+    return source;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/memory.h"
+#include "base/text.h"
+#include "files/file_name.h"
+#include "formats/choose_volume.h"
+#include "formats/dense/dense_source.h"
+#include "formats/raw/raw_file.h"
+#include "formats/raw/raw_load.h"
+#include "formats/readers.h"
+#include "formats/text/text_volume.h"
+
+namespace deltasplat {
+namespace {
+
+// Whether the header lies under gzip, with all that follows it.
+bool isPackedAsWhole(const TextVolume& volume) {
+    return volume.dataFile == volume.header && packingOf(volume.header) == Packing::kGzip;
+}
+
+// Whether data that are said to be packed begin so. Plain ones that do by chance are refused when
+// they are unpacked, and never taken for others.
+bool beginsPacked(const std::filesystem::path& file, std::uint64_t start) {
+    if (packingOf(file, start) != Packing::kNone) return true;
+    std::array<unsigned char, 2> begin{};
+    FileBytes(file).read(start, begin.data(), begin.size());
+    // RFC 1950, 2.2: deflate, a window of at most 32 KiB, and a sum that 31 divides.
+    return (begin[0] & 15) == 8 && begin[0] >> 4 <= 7 && (begin[0] << 8 | begin[1]) % 31 == 0;
+}
+
+std::uint64_t wantedBytes(const TextVolume& volume) {
+    return std::uint64_t(volume.volumes) * volume.layout.dataBytes();
+}
+
+std::string dataText(const TextVolume& volume) {
+    return volume.sizesText() + " " + rawTypeName(volume.layout.type);
+}
+
+// The file of values that a header tells of.
+RawFile rawFileOf(const TextVolume& volume) {
+    RawFile file{volume.dataFile, volume.layout};
+    file.volumes = volume.volumes;
+    file.mayGoOn = true;
+    const std::uint64_t wanted = wantedBytes(volume);
+    if (isPackedAsWhole(volume)) {
+        if (volume.atEnd) {
+            refuseFile(volume.header, "data that end with a packed file",
+                       "a place for their begin");
+        }
+        if (volume.packed) {
+            // Packed twice: what is packed once fits into memory, or the volume would not.
+            file.bytes = FileBytes::unpacked(volume.header);
+            file.packing = volume.packing;
+            file.packedStart = volume.dataStart;
+            file.layout.skipBytes = volume.skipBytes;
+            file.mayGoOn = false;
+        } else {
+            file.packing = Packing::kGzip;
+            file.layout.skipBytes = volume.dataStart + volume.skipBytes;
+        }
+        return file;
+    }
+    const std::uint64_t held = std::filesystem::file_size(volume.dataFile);
+    const std::uint64_t rest = held - std::min(held, volume.dataStart);
+    // What is said to be packed and is not has the very size of plain values, and the other way
+    // round.
+    const bool isPlain = volume.packed && rest == wanted + volume.skipBytes &&
+                         !beginsPacked(volume.dataFile, volume.dataStart);
+    const bool isGzip = !volume.packed && !volume.atEnd && volume.dataFile != volume.header &&
+                        rest != wanted + volume.skipBytes &&
+                        packingOf(volume.dataFile, volume.dataStart) == Packing::kGzip;
+    if ((volume.packed && !isPlain) || isGzip) {
+        file.packing = isGzip ? Packing::kGzip : volume.packing;
+        file.packedStart = volume.dataStart;
+        file.layout.skipBytes = volume.skipBytes;
+        file.mayGoOn = false;
+    } else {
+        file.layout.skipBytes =
+            volume.atEnd ? held - std::min(held, wanted) : volume.dataStart + volume.skipBytes;
+    }
+    const bool plain = file.packing == Packing::kNone;
+    constexpr double kMostRatio = 1032;  // deflate's best
+    const bool holds = plain ? held >= file.layout.skipBytes + wanted
+                             : (double(rest) + 1) * kMostRatio >= double(wanted);
+    if (!holds) {
+        refuseFile(
+            volume.dataFile,
+            std::to_string(plain && !volume.atEnd ? held - std::min(held, file.layout.skipBytes)
+                                                  : rest) +
+                " bytes of data",
+            (plain ? "enough for " : "enough gzip for ") + dataText(volume));
+    }
+    return file;
+}
+
+// The values of a file of text, read one after the other.
+class TextValues {
+  public:
+    explicit TextValues(const TextVolume& volume)
+        : volume_(volume),
+          source_(volume.dataFile,
+                  isPackedAsWhole(volume) ? Packing::kGzip : packingOf(volume.dataFile)) {
+        source_.skip(volume.dataStart + volume.skipBytes, [] {});
+    }
+
+    /// Writes the next values, in the processor's byte order (hex: in the file's).
+    void read(std::size_t count, std::byte* to) {
+        const auto bytes = std::size_t(rawTypeBytes(volume_.layout.type));
+        if (volume_.encoding == TextVolume::Encoding::kHex) {
+            for (std::size_t i = 0; i < count * bytes; ++i) to[i] = hexByte();
+            return;
+        }
+        withRawType(volume_.layout.type, [&](auto zero) {
+            for (std::size_t i = 0; i < count; ++i) {
+                const auto value = number<decltype(zero)>();
+                std::memcpy(to + i * bytes, &value, sizeof value);
+            }
+        });
+    }
+
+  private:
+    int get() {
+        if (used_ == held_) {
+            held_ = source_.read(buffer_.data(), buffer_.size());
+            used_ = 0;
+        }
+        return held_ == 0 ? -1 : static_cast<unsigned char>(buffer_[used_++]);
+    }
+    [[noreturn]] void refuse(const std::string& got) const {
+        refuseFile(volume_.dataFile, got, "enough numbers for " + dataText(volume_));
+    }
+    int hexDigit() {
+        int c = get();
+        while (c == ' ' || (c >= '\t' && c <= '\r')) c = get();
+        if (c >= '0' && c <= '9') return c - '0';
+        if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+        if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+        refuse(c < 0 ? "too few hex digits"
+                     : "\"" + printable(std::string(1, char(c))) + "\" among hex digits");
+    }
+    std::byte hexByte() {
+        const int high = hexDigit();
+        return std::byte(high << 4 | hexDigit());
+    }
+    std::string word() {
+        constexpr std::size_t kMost = 400;
+        const auto parts = [](int c) { return c == ' ' || c == ',' || (c >= '\t' && c <= '\r'); };
+        std::string word;
+        int c = get();
+        while (parts(c)) c = get();
+        for (; c >= 0 && !parts(c) && word.size() <= kMost; c = get()) word += char(c);
+        if (word.empty()) refuse("too few numbers");
+        if (word.size() > kMost)
+            refuse("a number of more than " + std::to_string(kMost) + " characters");
+        return word;
+    }
+    template <typename T>
+    T number() {
+        const std::string text = word();
+        const char* const begin = text.data() + (text.front() == '+' ? 1 : 0);
+        const char* const end = text.data() + text.size();
+        T value{};
+        auto result = std::from_chars(begin, end, value);
+        if constexpr (std::is_floating_point_v<T>) {
+            // A number too near to 0 for its type is 0, as for any other reader.
+            if (result.ec == std::errc::result_out_of_range && result.ptr == end) {
+                long double wide = 1;
+                const bool isKnown = std::from_chars(begin, end, wide).ec == std::errc{};
+                const bool isTiny = text.find("e-") != text.npos || text.find("E-") != text.npos;
+                if (isKnown ? std::fabs(wide) < 1 : isTiny) return T(isKnown ? wide : 0);
+            }
+        }
+        // Whole numbers may be written as real ones are: "3.0".
+        if constexpr (std::is_integral_v<T>) {
+            double real = 0;
+            const auto whole = std::from_chars(begin, end, real);
+            if (result.ptr != end && whole.ec == std::errc{} && whole.ptr == end &&
+                real == std::floor(real) && std::fabs(real) < 0x1p53 &&
+                real >= double(std::numeric_limits<T>::min()) &&
+                real <= double(std::numeric_limits<T>::max())) {
+                return T(real);
+            }
+        }
+        if (result.ec != std::errc{} || result.ptr != end) {
+            refuseFile(volume_.dataFile, "\"" + printable(text.substr(0, 40)) + "\" among numbers",
+                       std::string("values of type ") + rawTypeName(volume_.layout.type));
+        }
+        return value;
+    }
+
+    const TextVolume& volume_;
+    ByteSource source_;
+    std::array<char, 1 << 16> buffer_{};
+    std::size_t held_ = 0, used_ = 0;
+};
+
+// @param passed  how many volumes lie before the one that is read
+DenseSource sourceOfText(const TextVolume& volume, const RawLayout& layout, std::int64_t passed) {
+    DenseSource source;
+    source.dims = layout.dims;
+    source.type = layout.type;
+    const bool hex = volume.encoding == TextVolume::Encoding::kHex;
+    source.bigEndian = hex ? volume.layout.bigEndian : std::endian::native == std::endian::big;
+    // A number is a digit and what parts it from the next.
+    const double least =
+        double(wantedBytes(volume)) / (hex ? 0.5 : double(rawTypeBytes(layout.type)) / 2);
+    const double held = double(std::filesystem::file_size(volume.dataFile));
+    constexpr double kMostRatio = 1032;
+    if ((held + 1) * (packingOf(volume.dataFile) == Packing::kNone ? 1 : kMostRatio) < least) {
+        refuseFile(volume.dataFile, numberText(held) + " bytes of data",
+                   "enough for " + dataText(volume));
+    }
+    source.forEachLayer = [volume, layout, passed](const DenseSource::LayerUse& use,
+                                                   const Listener& listener) {
+        TextValues values(volume);
+        const auto pixels = std::size_t(layout.dims.x) * std::size_t(layout.dims.y);
+        const int slices = int(layout.dims.z);
+        const int most = std::min(slices, DenseSource::kLayerSlices);
+        const std::size_t bytes =
+            pixels * std::size_t(most) * std::size_t(rawTypeBytes(layout.type));
+        requireMemory(volume.header.string(), double(bytes));
+        const auto layer = std::make_unique_for_overwrite<std::byte[]>(bytes);
+        for (std::int64_t slice = 0; slice < passed * slices; ++slice) {
+            values.read(pixels, layer.get());
+            listener.report(0);
+        }
+        for (int first = 0; first < slices; first += most) {
+            const int count = std::min(most, slices - first);
+            values.read(pixels * std::size_t(count), layer.get());
+            use(first, count, layer.get());
+            listener.report(double(first + count) / slices);
+        }
+    };
+    return source;
+}
+
+// Makes a source of one value a voxel of one that has `parts` values side by side.
+// @param one  writes a voxel's value of those of its parts
+template <typename One>
+DenseSource joined(DenseSource source, std::int64_t parts, RawType type, const One& one) {
+    DenseSource result = source;
+    result.dims.x /= parts;
+    result.type = type;
+    result.rows = nullptr;
+    const auto from = std::size_t(rawTypeBytes(source.type)) * std::size_t(parts);
+    const auto to = std::size_t(rawTypeBytes(type));
+    const std::size_t pixels = std::size_t(result.dims.x) * std::size_t(result.dims.y);
+    result.forEachLayer = [source = std::move(source), from, to, pixels, one](
+                              const DenseSource::LayerUse& use, const Listener& listener) {
+        const std::size_t bytes = pixels * std::size_t(source.stepSlices()) * to;
+        requireMemory(source.where, double(bytes));
+        const auto values = std::make_unique_for_overwrite<std::byte[]>(bytes);
+        source.forEachLayer(
+            [&](int first, int slices, const std::byte* stored) {
+                for (std::size_t i = 0; i < pixels * std::size_t(slices); ++i)
+                    one(stored + i * from, values.get() + i * to);
+                use(first, slices, values.get());
+            },
+            listener);
+    };
+    return result;
+}
+
+DenseSource partOf(DenseSource source, std::int64_t parts, std::int64_t part) {
+    const RawType type = source.type;
+    const auto bytes = std::size_t(rawTypeBytes(type));
+    return joined(std::move(source), parts, type,
+                  [bytes, place = bytes * std::size_t(part)](const std::byte* from, std::byte* to) {
+                      std::memcpy(to, from + place, bytes);
+                  });
+}
+
+// What the values of layers become where all layers are one: how far up they lie, and the label.
+using Layers = std::map<std::int64_t, std::map<std::int64_t, std::pair<std::size_t, std::int64_t>>>;
+
+// One label a voxel: that of the segment which lies on top.
+DenseSource flattened(DenseSource source, const TextVolume& volume) {
+    Layers layers;
+    std::int64_t most = 0;
+    for (std::size_t i = 0; i < volume.segments.size(); ++i) {
+        const Segment& segment = volume.segments[i];
+        layers[segment.layer][segment.stored] = {i + 1, segment.label.value};
+        most = std::max(most, segment.label.value);
+    }
+    const RawType type = most < 0x100        ? RawType::kUint8
+                         : most < 0x10000    ? RawType::kUint16
+                         : most < 0x7fffffff ? RawType::kInt32
+                                             : RawType::kInt64;
+    const RawType stored = source.type;
+    const bool swap = mustSwap(source.bigEndian);
+    const auto bytes = std::size_t(rawTypeBytes(stored));
+    const auto nameless = std::make_shared<std::uint64_t>(0);
+    const auto one = [layers = std::move(layers), type, stored, swap, bytes, nameless](
+                         const std::byte* from, std::byte* to) {
+        std::pair<std::size_t, std::int64_t> top{0, 0};
+        for (const auto& [number, labels] : layers) {
+            const std::byte* const layer = from + bytes * std::size_t(number);
+            const double value = withRawType(
+                stored, [&](auto zero) { return double(loadValue<decltype(zero)>(layer, swap)); });
+            if (!(std::fabs(value) < 0x1p53) || value == 0) continue;
+            const auto found = labels.find(std::int64_t(value));
+            if (found != labels.end() && double(found->first) == value)
+                top = std::max(top, found->second);
+            else
+                ++*nameless;
+        }
+        withRawType(type, [&](auto zero) {
+            const auto value = decltype(zero)(top.second);
+            std::memcpy(to, &value, sizeof value);
+        });
+    };
+    DenseSource result = joined(std::move(source), volume.volumes, type, one);
+    result.bigEndian = std::endian::native == std::endian::big;
+    // Said once, however often values are read.
+    const auto said = std::make_shared<bool>(false);
+    result.forEachLayer = [all = std::move(result.forEachLayer), nameless, said,
+                           where = volume.header.string()](const DenseSource::LayerUse& use,
+                                                           const Listener& listener) {
+        *nameless = 0;
+        all(use, listener);
+        if (*nameless > 0 && !std::exchange(*said, true))
+            listener.warn(where + ": " +
+                          countText(*nameless, "value of layers has no segment, and counts",
+                                    "values of layers have no segment, and count") +
+                          " as nothing");
+    };
+    return result;
+}
+
+std::shared_ptr<const LabelList> labelsOf(const std::vector<Segment>& segments,
+                                          std::optional<std::int64_t> layer) {
+    auto list = std::make_shared<LabelList>();
+    for (const Segment& segment : segments) {
+        if (layer && segment.layer != *layer) continue;
+        list->entries.push_back(segment.label);
+        if (layer) list->entries.back().value = segment.stored;
+    }
+    return list;
+}
+
+void warnOfLayers(const TextVolume& volume, const Listener& listener) {
+    std::string line = volume.header.string() + ": " + std::to_string(volume.volumes) +
+                       " layers of segments are read as one, with later segments on top";
+    if (volume.renumbered) {
+        line += ", numbered from 1 to " + std::to_string(volume.segments.size()) +
+                " as layers share numbers";
+    }
+    listener.warn(line + " (one layer: `volume` 0 to " + std::to_string(volume.volumes - 1) + ")");
+}
+
+DenseSource openTextVolume(const TextVolume& volume, const ReadOptions& options,
+                           const Listener& listener) {
+    const bool flat = volume.interleaved && !volume.segments.empty() && !options.volume;
+    const std::int64_t chosen =
+        flat ? 0
+             : chooseVolume(volume.header.string(), "sizes " + volume.sizesText(), volume.volumes,
+                            options.volume);
+    if (flat) warnOfLayers(volume, listener);
+    RawLayout layout = volume.layout;
+    if (volume.interleaved) layout.dims.x *= volume.volumes;
+    DenseSource source;
+    if (volume.encoding == TextVolume::Encoding::kBytes) {
+        RawFile file = rawFileOf(volume);
+        if (volume.interleaved) {
+            file.layout.dims.x = layout.dims.x;
+            file.volumes = 1;
+        }
+        file.volume = volume.interleaved ? 0 : chosen;
+        source = denseSourceOf(file);
+    } else {
+        source = sourceOfText(volume, layout, volume.interleaved ? 0 : chosen);
+    }
+    source.where = volume.header.string();
+    source.name = nameWithoutExtensions(volume.header);
+    source.worldFromIndex = volume.worldFromIndex;
+    source.space = volume.space;
+    source.lengthUnit = volume.lengthUnit;
+    source.labels = volume.labels;
+    if (volume.interleaved && volume.volumes > 1)
+        source = flat ? flattened(std::move(source), volume)
+                      : partOf(std::move(source), volume.volumes, chosen);
+    if (!volume.segments.empty())
+        source.labels = labelsOf(volume.segments, flat ? std::nullopt : std::optional(chosen));
+    source.volumes = flat ? 1 : volume.volumes;
+    return rescaled(std::move(source), volume.rescale);
+}
+
+}  // namespace
+
+DenseSource openNrrd(const std::filesystem::path& file, const ReadOptions& options,
+                     const Listener& listener) {
+    return openTextVolume(readNrrdVolume(file, listener), options, listener);
+}
+
+DenseSource openMetaImage(const std::filesystem::path& file, const ReadOptions& options,
+                          const Listener& listener) {
+    return openTextVolume(readMetaVolume(file, listener), options, listener);
+}
+
+}  // namespace deltasplat

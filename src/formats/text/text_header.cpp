@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/text/text_header.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <string_view>
+
+#include "base/memory.h"
+#include "base/text.h"
+#include "deltasplat/error.h"
+#include "files/file_bytes.h"
+
+namespace deltasplat {
+namespace {
+
+constexpr std::size_t kMostLine = std::size_t{1} << 20;
+constexpr std::size_t kMostHeader = std::size_t{1} << 24;
+
+[[noreturn]] void refuse(const std::string& where, const std::string& got,
+                         const std::string& expected) {
+    throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
+}
+
+std::string trimmed(const std::string& text) {
+    const char* const kBlanks = " \t";
+    const std::size_t begin = text.find_first_not_of(kBlanks);
+    if (begin == std::string::npos) return "";
+    return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
+
+std::string fieldName(std::string_view text) {
+    std::string name;
+    for (const char c : lowerCase(std::string(text))) {
+        if (c != ' ' && c != '\t') name += c;
+    }
+    return name;
+}
+
+bool controls(char c) {
+    return (static_cast<unsigned char>(c) < ' ' && c != '\t') || c == '\x7f';
+}
+
+// The lines of a file, plain or under gzip, one after the other.
+class Lines {
+  public:
+    explicit Lines(const std::filesystem::path& file)
+        : where_(file.string()), source_(file, packingOf(file)) {}
+    std::optional<std::string> next() {
+        std::string line;
+        for (std::optional<char> c; (c = get());) {
+            if (place_ > kMostHeader || line.size() > kMostLine) {
+                refuse(where_, "a header without end", "a text header");
+            }
+            if (c == '\n') {
+                if (line.ends_with('\r')) line.pop_back();
+                return line;
+            }
+            line += *c;
+        }
+        return line.empty() ? std::nullopt : std::optional(line);
+    }
+    std::uint64_t place() const { return place_; }
+    const std::string& where() const { return where_; }
+
+  private:
+    std::optional<char> get() {
+        if (used_ == held_) {
+            held_ = source_.read(buffer_.data(), buffer_.size());
+            used_ = 0;
+        }
+        if (held_ == 0) return {};
+        ++place_;
+        return buffer_[used_++];
+    }
+
+    std::string where_;
+    ByteSource source_;
+    std::array<char, 4096> buffer_{};
+    std::size_t held_ = 0, used_ = 0;
+    std::uint64_t place_ = 0;
+};
+
+// As much of a line as a message can hold.
+std::string quoted(const std::string& line) {
+    constexpr std::size_t kMost = 60;
+    const bool whole = line.size() <= kMost;
+    return "the header line \"" + printable(line.substr(0, kMost)) + (whole ? "\"" : "...\"");
+}
+
+[[noreturn]] void refuseLine(const Lines& lines, const std::string& line,
+                             const std::string& expected) {
+    refuse(lines.where(), quoted(line), expected);
+}
+
+// In fields that mean something here. What some take for the end of a line, and others do not, is
+// in none of them.
+void requireText(const Lines& lines, const std::string& line) {
+    if (std::ranges::none_of(line, controls)) return;
+    refuse(lines.where(), "control characters in " + quoted(line), "lines of text");
+}
+
+// Of a field given twice readers take one or the other.
+void addField(const Lines& lines, const TextHeader::Field& field, TextHeader& header) {
+    if (header.find(field.name) != nullptr) {
+        refuse(lines.where(), "the field " + printable(field.name) + " twice", "each field once");
+    }
+    header.fields.push_back(field);
+}
+
+// Fields of the format, which come in upper and lower case, and with the blank or without.
+constexpr std::array<std::string_view, 31> kNrrdFields{"content",
+                                                       "number",
+                                                       "type",
+                                                       "block size",
+                                                       "dimension",
+                                                       "space",
+                                                       "space dimension",
+                                                       "sizes",
+                                                       "spacings",
+                                                       "thicknesses",
+                                                       "axis mins",
+                                                       "axis maxs",
+                                                       "space directions",
+                                                       "centers",
+                                                       "centerings",
+                                                       "kinds",
+                                                       "labels",
+                                                       "units",
+                                                       "min",
+                                                       "max",
+                                                       "old min",
+                                                       "old max",
+                                                       "endian",
+                                                       "encoding",
+                                                       "line skip",
+                                                       "byte skip",
+                                                       "sample units",
+                                                       "space units",
+                                                       "space origin",
+                                                       "measurement frame",
+                                                       "data file"};
+
+// Fields that say what the voxels are and where. Others are anybody's, and passed over.
+constexpr std::array<std::string_view, 28> kMetaFields{"NDims",
+                                                       "CompressedData",
+                                                       "CompressedDataSize",
+                                                       "BinaryData",
+                                                       "ElementByteOrderMSB",
+                                                       "BinaryDataByteOrderMSB",
+                                                       "Position",
+                                                       "Origin",
+                                                       "Offset",
+                                                       "TransformMatrix",
+                                                       "Rotation",
+                                                       "Orientation",
+                                                       "DistanceUnits",
+                                                       "AnatomicalOrientation",
+                                                       "ElementSpacing",
+                                                       "DimSize",
+                                                       "HeaderSize",
+                                                       "ElementNumberOfChannels",
+                                                       "ElementSize",
+                                                       "ElementNBits",
+                                                       "ElementType",
+                                                       "ElementToIntensityFunctionSlope",
+                                                       "ElementToIntensityFunctionOffset",
+                                                       "RescaleSlope",
+                                                       "RescaleIntercept",
+                                                       "RescaleOffset",
+                                                       "intent_code",
+                                                       "ElementDataFile"};
+
+// The fields of a format by their letters.
+using Spellings = std::map<std::string, std::string_view, std::less<>>;
+Spellings spellingsOf(std::span<const std::string_view> fields) {
+    Spellings spellings;
+    for (const std::string_view field : fields) spellings.emplace(fieldName(field), field);
+    return spellings;
+}
+
+// How a format spells the field whose letters these are; empty if it has none.
+std::string_view spellingOf(const Spellings& spellings, const std::string& letters) {
+    const auto found = spellings.find(letters);
+    return found == spellings.end() ? std::string_view() : found->second;
+}
+
+// Takes a line "key:=value", where backslashes stand before what would end a line or a key.
+void addKeyValue(const Lines& lines, const std::string& line, std::size_t sign,
+                 TextHeader& header) {
+    // Short keys take many times the bytes that they have in the file.
+    constexpr std::size_t kKeysAtOnce = std::size_t{1} << 14;
+    if (header.keyValues.size() % kKeysAtOnce == 0) {
+        requireMemory(lines.where(), double(header.keyValues.size() + kKeysAtOnce) *
+                                         sizeof(header.keyValues.front()));
+    }
+    const auto plain = [](const std::string& text) {
+        std::string result;
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            const bool escapes = text[i] == '\\' && i + 1 < text.size() &&
+                                 (text[i + 1] == 'n' || text[i + 1] == '\\');
+            result += !escapes ? text[i] : text[i + 1] == 'n' ? '\n' : '\\';
+            i += escapes ? 1 : 0;
+        }
+        return result;
+    };
+    header.keyValues.emplace_back(plain(line.substr(0, sign)), plain(line.substr(sign + 2)));
+}
+
+// What follows the first colon tells a field from a key, whatever the key's name.
+void addNrrdLine(const Lines& lines, const std::string& line, TextHeader& header) {
+    const std::size_t colon = std::min(line.find(':'), line.size());
+    const std::string before = line.substr(0, colon);
+    const std::string letters = fieldName(before);
+    static const Spellings spellings = spellingsOf(kNrrdFields);
+    const std::string_view spelling = spellingOf(spellings, letters);
+    const bool spelled = lowerCase(before) == spelling || lowerCase(before) == letters;
+    const bool isField = !spelling.empty() && line.compare(colon, 2, ": ") == 0;
+    if (!isField || !spelled) {
+        const std::size_t sign = line.find(":=");
+        if (sign != std::string::npos) return addKeyValue(lines, line, sign, header);
+        refuseLine(
+            lines, line,
+            spelling.empty() ? "\"field: value\"" : "\"" + std::string(spelling) + ": value\"");
+    }
+    requireText(lines, line);
+    const std::size_t value = std::min(line.size(), line.find_first_not_of(" \t", colon + 1));
+    // Blanks behind the name of a file are part of it.
+    const bool isName = letters == "datafile";
+    addField(lines, {letters, isName ? line.substr(value) : trimmed(line.substr(value))}, header);
+}
+
+void addMetaLine(const Lines& lines, const std::string& line, TextHeader& header) {
+    const std::size_t sign = line.find('=');
+    const std::string name = trimmed(line.substr(0, std::min(sign, line.size())));
+    if (sign == std::string::npos || name.empty()) refuseLine(lines, line, "\"Name = value\"");
+    static const Spellings spellings = spellingsOf(kMetaFields);
+    const std::string_view spelling = spellingOf(spellings, fieldName(name));
+    if (spelling.empty()) return;
+    requireText(lines, line);
+    const std::string value = trimmed(line.substr(sign + 1));
+    const bool signs = value.starts_with('=') || value.starts_with(':');
+    if (name != spelling || signs)
+        refuseLine(lines, line, "\"" + std::string(spelling) + " = value\"");
+    addField(lines, {fieldName(name), value}, header);
+}
+
+}  // namespace
+
+const std::string* TextHeader::find(const std::string& name) const {
+    for (const Field& field : fields) {
+        if (field.name == name) return &field.value;
+    }
+    return nullptr;
+}
+
+const std::string* TextHeader::findKey(const std::string& key) const {
+    for (const auto& [name, value] : keyValues) {
+        if (name == key) return &value;
+    }
+    return nullptr;
+}
+
+TextHeader readNrrdHeader(const std::filesystem::path& file) {
+    Lines lines(file);
+    TextHeader header;
+    std::optional<std::string> line = lines.next();
+    if (!line || line->size() != 8 || !line->starts_with("NRRD000") || (*line)[7] < '1' ||
+        (*line)[7] > '5') {
+        refuse(lines.where(), "no NRRD header", "a file that begins with NRRD0001 to NRRD0005");
+    }
+    while ((line = lines.next()) && !line->empty()) {
+        if ((*line)[0] != '#') addNrrdLine(lines, *line, header);
+    }
+    header.dataStart = lines.place();
+    return header;
+}
+
+TextHeader readMetaHeader(const std::filesystem::path& file) {
+    Lines lines(file);
+    TextHeader header;
+    for (std::optional<std::string> line; (line = lines.next());) {
+        if (trimmed(*line).empty()) continue;
+        addMetaLine(lines, *line, header);
+        if (!header.fields.empty() && header.fields.back().name == "elementdatafile") {
+            header.dataStart = lines.place();
+            return header;
+        }
+    }
+    refuse(lines.where(), "no ElementDataFile", "a MetaImage header that ends with one");
+}
+
+std::vector<std::int64_t> parseSizes(const std::string& where, const std::string& text) {
+    constexpr std::int64_t kMost = std::int64_t{1} << 30;
+    std::vector<std::int64_t> sizes;
+    std::istringstream words(text);
+    for (std::string word; words >> word;) {
+        std::int64_t size = 0;
+        const char* const end = word.data() + word.size();
+        const auto result = std::from_chars(word.data(), end, size);
+        if (result.ec != std::errc{} || result.ptr != end || size < 1 || size > kMost) {
+            refuse(where, "sizes " + printable(text),
+                   "whole numbers from 1 to " + std::to_string(kMost));
+        }
+        sizes.push_back(size);
+    }
+    if (sizes.empty()) refuse(where, "no sizes", "the number of voxels along each axis");
+    return sizes;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/vdb/vdb_tree.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <map>
+#include <type_traits>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "formats/vdb/packed_values.h"
+#include "volume/tree_grid.h"
+
+namespace deltasplat {
+namespace {
+
+openvdb::Coord placeOf(const std::array<std::int32_t, 3>& origin) {
+    return openvdb::Coord(origin.data());
+}
+
+// What is stored of a value: of a bool a byte, which may hold anything.
+template <typename T>
+using StoredValue = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
+
+template <typename Tree>
+class TreeReader {
+  public:
+    using T = typename Tree::ValueType;
+    using Stored = StoredValue<T>;
+    using Upper = typename Tree::RootNodeType::ChildNodeType;
+    using Lower = typename Upper::ChildNodeType;
+    using Leaf = typename Lower::ChildNodeType;
+
+    TreeReader(const FileBytes& file, const VdbValueFormat& format, const Stored& background,
+               const std::vector<VdbNode>& nodes, const VdbLeaves& leaves)
+        : file_(file), format_(format), background_(background), nodes_(nodes), leaves_(leaves) {}
+
+    typename Tree::Ptr read(const Listener& listener) {
+        auto tree = std::make_shared<Tree>(T(background_));
+        readInner(*tree);
+        if (isSound_) readLeaves(listener);
+        return whole(std::move(tree));
+    }
+
+    typename Tree::Ptr readNodes() {
+        auto tree = std::make_shared<Tree>(T(background_));
+        readInner(*tree);
+        if (isSound_) noteLeaves();
+        return whole(std::move(tree));
+    }
+
+  private:
+    // Puts together what has been read.
+    typename Tree::Ptr whole(typename Tree::Ptr tree) {
+        if (!isSound_) return nullptr;
+        for (auto& [origin, lower] : lowers_)
+            uppers_.at(origin & ~(Upper::DIM - 1))->addChild(lower.release());
+        for (auto& [origin, upper] : uppers_) tree->root().addChild(upper.release());
+        return tree;
+    }
+
+    // Reads nodes, and tiles of the root.
+    void readInner(Tree& tree) {
+        std::vector<std::unique_ptr<Upper>> uppers(nodes_.size());
+        std::vector<std::unique_ptr<Lower>> lowers(nodes_.size());
+        parallelFor(nodes_.size(), [&](std::size_t i) {
+            if (nodes_[i].level == 2) uppers[i] = readNode<Upper>(nodes_[i]);
+            if (nodes_[i].level == 1) lowers[i] = readNode<Lower>(nodes_[i]);
+        });
+        for (std::size_t i = 0; i < nodes_.size() && isSound_; ++i) {
+            const openvdb::Coord origin = placeOf(nodes_[i].origin);
+            if (uppers[i]) uppers_[origin] = std::move(uppers[i]);
+            if (lowers[i]) lowers_[origin] = std::move(lowers[i]);
+            if (nodes_[i].level == 3) readRootTile(nodes_[i], tree);
+        }
+    }
+
+    void readRootTile(const VdbNode& node, Tree& tree) {
+        std::vector<char> stored(format_.alone);
+        if (file_.read(node.begin, stored.data(), stored.size()) != stored.size()) {
+            isSound_ = false;
+            return;
+        }
+        tree.root().addTile(placeOf(node.origin), T(valueAlone<Stored>(stored.data(), format_)),
+                            node.tiles > 0);
+    }
+
+    template <typename Node>
+    std::unique_ptr<Node> readNode(const VdbNode& node) {
+        std::vector<char> bytes(node.size);
+        std::vector<std::uint64_t> masks(2 * Node::NUM_VALUES / 64);
+        const std::span<const std::uint64_t> all(masks);
+        const bool isThere = file_.read(node.begin, bytes.data(), node.size) == node.size &&
+                             node.size >= all.size_bytes();
+        if (isThere) std::memcpy(masks.data(), bytes.data(), all.size_bytes());
+        const auto children = all.first(all.size() / 2);
+        const auto active = all.last(all.size() / 2);
+        std::vector<Stored> values(Node::NUM_VALUES);
+        std::vector<char> stored;
+        if (!isThere || !unpackAll(std::span<const char>(bytes).subspan(all.size_bytes()), active,
+                                   format_, background_, stored, values.data())) {
+            isSound_ = false;
+            return nullptr;
+        }
+        auto made = std::make_unique<Node>(placeOf(node.origin), T(background_), /*active=*/false);
+        for (openvdb::Index i = 0; i < Node::NUM_VALUES; ++i) {
+            const auto has = [&](const auto& mask) { return (mask[i / 64] >> (i % 64) & 1) != 0; };
+            if (!has(children)) made->addTile(i, T(values[i]), has(active));
+        }
+        return made;
+    }
+
+    void readLeaves(const Listener& listener) {
+        constexpr std::size_t kRun = VdbLeaves::kRun;
+        const std::size_t count = leaves_.leaves().size();
+        std::vector<std::unique_ptr<Leaf>> leaves(count);
+        SharedProgress progress(listener);
+        std::atomic<std::size_t> done = 0;
+        parallelFor((count + kRun - 1) / kRun, [&](std::size_t run) {
+            VdbLeaves::BytesRoom room;
+            const std::size_t end = std::min(count, (run + 1) * kRun);
+            for (std::size_t i = run * kRun; i < end && isSound_; ++i) {
+                leaves[i] = readLeaf(leaves_.leaves()[i], end, room);
+                if (!leaves[i]) isSound_ = false;
+            }
+            progress.report(double(done += kRun) / double(count + kRun));
+        });
+        for (std::size_t i = 0; i < count && isSound_; ++i) hangIn(std::move(leaves[i]));
+    }
+
+    void noteLeaves() {
+        for (std::size_t i = 0; i < leaves_.leaves().size(); ++i) {
+            auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(),
+                                               placeOf(leaves_.leaves()[i].origin));
+            leaf->setTransientData(openvdb::Index32(i));
+            hangIn(std::move(leaf));
+        }
+    }
+
+    void hangIn(std::unique_ptr<Leaf> leaf) {
+        const openvdb::Coord origin = leaf->origin() & ~(Lower::DIM - 1);
+        if (!lastNode_ || lastNode_->origin() != origin) lastNode_ = lowers_.at(origin).get();
+        lastNode_->addChild(leaf.release());
+    }
+
+    std::unique_ptr<Leaf> readLeaf(const VdbLeaf& leaf, std::size_t behind,
+                                   VdbLeaves::BytesRoom& room) const {
+        // What Blosc takes for a moment leaves gaps.
+        expectPieces(std::size_t(1.5 * (sizeof(Leaf) + Leaf::SIZE * sizeof(T))));
+        auto made = std::make_unique<Leaf>(openvdb::PartialCreate(), placeOf(leaf.origin));
+        made->allocate();
+        VdbLeaves::Mask mask;
+        if (!readValues(leaf, behind, room, mask, *made)) return nullptr;
+        typename Leaf::NodeMaskType active;
+        for (openvdb::Index x = 0; x < mask.size(); ++x)
+            active.template getWord<std::uint64_t>(x) = mask[x];
+        made->setValueMask(active);
+        return made;
+    }
+
+    bool readValues(const VdbLeaf& leaf, std::size_t behind, VdbLeaves::BytesRoom& room,
+                    VdbLeaves::Mask& mask, Leaf& made) const {
+        auto* const values = made.buffer().data();
+        if constexpr (std::is_same_v<T, bool>) {
+            VdbLeaves::Mask bits;
+            if (!leaves_.allBools(leaf, behind, mask, room.run, bits)) return false;
+            std::copy(bits.begin(), bits.end(), values);
+            return true;
+        } else {
+            return leaves_.allValues(leaf, background_, behind, mask, room, values);
+        }
+    }
+
+    const FileBytes& file_;
+    const VdbValueFormat& format_;
+    Stored background_;
+    const std::vector<VdbNode>& nodes_;
+    const VdbLeaves& leaves_;
+    std::map<openvdb::Coord, std::unique_ptr<Upper>> uppers_;
+    std::map<openvdb::Coord, std::unique_ptr<Lower>> lowers_;
+    Lower* lastNode_ = nullptr;  // that a leaf was hung into
+    std::atomic<bool> isSound_ = true;
+};
+
+}  // namespace
+
+openvdb::tree::TreeBase::Ptr readTree(const FileBytes& file, const std::string& type,
+                                      const VdbValueFormat& format,
+                                      std::span<const char> background,
+                                      const std::vector<VdbNode>& nodes, const VdbLeaves& leaves,
+                                      const Listener& listener) {
+    using Trees = TreeTypes<openvdb::FloatTree, openvdb::DoubleTree, openvdb::Int32Tree,
+                            openvdb::Int64Tree, openvdb::BoolTree, openvdb::MaskTree,
+                            openvdb::Vec3STree, openvdb::Vec3DTree, openvdb::Vec3ITree>;
+    openvdb::tree::TreeBase::Ptr tree;
+    applyType(Trees(), type == kHalfType ? "float" : type,
+              [&]<typename Tree>(std::type_identity<Tree>) {
+                  const auto value =
+                      valueAlone<StoredValue<typename Tree::ValueType>>(background.data(), format);
+                  tree = TreeReader<Tree>(file, format, value, nodes, leaves).read(listener);
+              });
+    return tree;
+}
+
+template <typename T>
+typename openvdb::tree::Tree4<T, 5, 4, 3>::Type::Ptr readNodes(const FileBytes& file,
+                                                               const VdbValueFormat& format,
+                                                               T background,
+                                                               const std::vector<VdbNode>& nodes,
+                                                               const VdbLeaves& leaves) {
+    using Tree = typename openvdb::tree::Tree4<T, 5, 4, 3>::Type;
+    return TreeReader<Tree>(file, format, background, nodes, leaves).readNodes();
+}
+
+#define DELTASPLAT_READ_NODES(T)                                                 \
+    template openvdb::tree::Tree4<T, 5, 4, 3>::Type::Ptr readNodes(              \
+        const FileBytes&, const VdbValueFormat&, T, const std::vector<VdbNode>&, \
+        const VdbLeaves&);
+DELTASPLAT_READ_NODES(float)
+DELTASPLAT_READ_NODES(double)
+DELTASPLAT_READ_NODES(std::int32_t)
+DELTASPLAT_READ_NODES(std::int64_t)
+#undef DELTASPLAT_READ_NODES
+
+}  // namespace deltasplat

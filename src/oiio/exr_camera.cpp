@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: the OpenEXR project, "Standard Attributes" (worldToCamera, worldToNDC). Renderers agree
+// on less than that page says: the camera's space is left-handed (z goes away from it) in some and
+// right-handed in others, NDC goes down from 0 to 1 or up from -1 to 1. The matrices tell.
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/matrix.hpp>
+
+#include "base/text.h"
+#include "deltasplat/error.h"
+#include "files/file_name.h"
+#include "formats/cameras/readers.h"
+#include "modules/image_module.h"
+#include "oiio/image_file.h"
+#include "view/camera_axes.h"
+
+namespace deltasplat {
+namespace {
+
+// Halves of rounding that floats of a matrix, multiplied with another's inverse, leave.
+constexpr double kRounding = 1e-4;
+
+glm::dmat4 readMatrix(const std::filesystem::path& file, const OIIO::ImageSpec& spec,
+                      const char* name) {
+    std::array<double, 16> v{};
+    const OIIO::ParamValue* attribute = spec.find_attribute(name);
+    const OIIO::TypeDesc type = attribute ? attribute->type() : OIIO::TypeDesc();
+    const bool isDouble = type.basetype == OIIO::TypeDesc::DOUBLE;
+    const std::size_t bytes = 16 * (isDouble ? sizeof(double) : sizeof(float));
+    if (!(isDouble || type.basetype == OIIO::TypeDesc::FLOAT) || type.size() != bytes)
+        refuseFile(file, std::string("no matrix ") + name,
+                   "worldToCamera and worldToNDC among its metadata");
+    for (std::size_t i = 0; i < 16; ++i)
+        v[i] = isDouble ? static_cast<const double*>(attribute->data())[i]
+                        : double(static_cast<const float*>(attribute->data())[i]);
+    if (!std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); }))
+        refuseFile(file, std::string(name) + " with a number that is not finite", "finite ones");
+    glm::dmat4 matrix;
+    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = v[std::size_t(i)];
+    return matrix;
+}
+
+glm::dmat4 inverseOf(const std::filesystem::path& file, const glm::dmat4& matrix) {
+    glm::dmat4 inverse = glm::inverse(matrix);
+    // Rounding leaves no projection where there was none.
+    const bool isAffine =
+        matrix[0].w == 0 && matrix[1].w == 0 && matrix[2].w == 0 && matrix[3].w == 1;
+    for (int i = 0; isAffine && i < 4; ++i) inverse[i].w = matrix[i].w;
+    if (std::isfinite(glm::determinant(inverse)) && glm::determinant(inverse) != 0) return inverse;
+    refuseFile(file, "a worldToCamera that is singular", "one that can be inverted");
+}
+
+// Coordinates of a picture of a plane at distance 1 (of a parallel picture: at any): x and y of a
+// point (x, y) of the camera's space are `scale` times it plus `middle`.
+struct PictureMap {
+    bool isParallel = false;
+    glm::dvec2 scale{1};
+    glm::dvec2 middle{0};
+};
+
+// @param ndcFromDepth  from (right, up, ahead)
+PictureMap pictureMap(const std::filesystem::path& file, const glm::dmat4& ndcFromDepth) {
+    const glm::dmat4& m = ndcFromDepth;
+    const double largest = std::max({std::abs(m[0][0]), std::abs(m[1][1]), kRounding});
+    const auto isNothing = [&](double x) { return std::abs(x) <= kRounding * largest; };
+    PictureMap map;
+    map.isParallel = std::abs(m[3][3]) > std::abs(m[2][3]);
+    const int along = map.isParallel ? 3 : 2;
+    const bool isStraight = isNothing(m[0][1]) && isNothing(m[1][0]) && isNothing(m[0][3]) &&
+                            isNothing(m[1][3]) && m[0][0] != 0 && m[1][1] != 0;
+    if (!isStraight || m[along][3] == 0)
+        refuseFile(file, "a worldToNDC that is no picture of what worldToCamera sees",
+                   "both of the same camera");
+    map.scale = glm::dvec2(m[0][0], m[1][1]) / m[along][3];
+    map.middle = glm::dvec2(m[along]) / m[along][3];
+    if (map.scale.x < 0) refuseFile(file, "a worldToNDC that is mirrored", "x to the right");
+    return map;
+}
+
+}  // namespace
+
+CameraMotion image_module::readExrCamera(const std::filesystem::path& file,
+                                         const Listener& listener) {
+    const ImageFile image(file, ImagePages(file), 0);
+    const OIIO::ImageSpec& spec = image.spec();
+    glm::dmat4 cameraFromWorld = readMatrix(file, spec, "worldToCamera");
+    const glm::dmat4 ndcFromWorld = readMatrix(file, spec, "worldToNDC");
+    if (glm::determinant(glm::dmat3(cameraFromWorld)) < 0) {
+        // Left-handed: z goes ahead.
+        for (int i = 0; i < 4; ++i) cameraFromWorld[i].z = -cameraFromWorld[i].z;
+    }
+    FilmCamera camera;
+    camera.worldFromCamera = inverseOf(file, cameraFromWorld);
+    cameraAxes(camera.worldFromCamera, file.string() + ": worldToCamera", ErrorCode::kInput);
+    glm::dmat4 cameraFromDepth(1);
+    cameraFromDepth[2][2] = -1;
+    const PictureMap map =
+        pictureMap(file, ndcFromWorld * (camera.worldFromCamera * cameraFromDepth));
+
+    // 0 to 1 downwards, or -1 to 1 upwards.
+    const bool goesUp = map.scale.y > 0;
+    if (goesUp)
+        listener.warn(file.string() + ": worldToNDC goes up, not down, and is read as -1 to 1");
+    const double range = goesUp ? 2 : 1;
+    const double middle = goesUp ? 0 : 0.5;
+    const glm::dvec2 frame = range / glm::abs(map.scale);
+    const glm::dvec2 size(spec.full_width, spec.full_height);
+    if (!(size.x >= 1 && size.y >= 1)) refuseFile(file, "no display window", "one");
+    camera.sizePixels = glm::ivec2(size);
+    camera.pixelAspect = frame.x / size.x / (frame.y / size.y);
+    // Square, but for rounding.
+    if (std::abs(camera.pixelAspect - 1) < kRounding) camera.pixelAspect = 1;
+    if (!(camera.pixelAspect >= kLeastPixelAspect && camera.pixelAspect <= kMostPixelAspect))
+        refuseFile(file, "pixels " + numberText(camera.pixelAspect) + " times as wide as high",
+                   "0.01 to 100 times");
+    camera.apertureMm = {kDefaultApertureMm, 0};
+    const glm::dvec2 share((middle - map.middle.x) / range,
+                           (goesUp ? middle - map.middle.y : map.middle.y - middle) / range);
+    const double height = kDefaultApertureMm / camera.pixelAspect * size.y / size.x;
+    camera.offsetMm = share * glm::dvec2(kDefaultApertureMm, height);
+    if (map.isParallel) {
+        camera.projection = Projection::kOrtho;
+        camera.frameWidthWorld = frame.x;
+    } else {
+        camera.focalMm = kDefaultApertureMm / frame.x;
+    }
+    return {{}, [camera](double) { return camera; }, {}};
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "oiio/image_file.h"
+
+#include <OpenImageIO/filesystem.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/cleared_memory.h"
+#include "base/silent_stderr.h"
+#include "base/text.h"
+#include "deltasplat/error.h"
+#include "files/file_bytes.h"
+#include "files/file_name.h"
+#include "formats/images/image_claims.h"
+#include "formats/images/stored_numbers.h"
+#include "formats/input_kind.h"
+#include "oiio/exr_threads.h"
+#include "oiio/pgm_samples.h"
+
+namespace deltasplat {
+namespace {
+
+using OIIO::ImageInput;
+using OIIO::ImageSpec;
+
+// OpenImageIO repeats itself on further lines.
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& complaint,
+                         const std::string& expected) {
+    const std::string reason = complaint.empty()
+                                   ? "no reason given"
+                                   : printable(complaint.substr(0, complaint.find('\n')));
+    throw Error(ErrorCode::kInput,
+                gotExpected(file.string(), "what OpenImageIO refuses (" + reason + ")", expected));
+}
+
+std::unique_ptr<ImageInput> openInput(const std::filesystem::path& file,
+                                      OIIO::Filesystem::IOProxy* proxy, ImageSpec& spec) {
+    requireRegularFile(file);
+    ImageSpec config;
+    config["oiio:UnassociatedAlpha"] = 1;  // alpha is not asked for, so it must change nothing
+    const SilentStderr silent;             // libpng prints what OpenImageIO then reports
+    const ClearedMemory cleared;
+    // Asked for by the name of a file that its format's reader refuses, OpenImageIO would hand it
+    // to all of its readers, those of DICOM and films too.
+    limitExrThreads(isTiffName(file) || requireClaims(file));
+    auto input = ImageInput::create(lowerExtension(file).substr(1));
+    if (input && proxy != nullptr) input->set_ioproxy(proxy);
+    if (!input || !input->open(file.string(), spec, config)) {
+        refuse(file, input ? input->geterror() : OIIO::geterror(), "an image");
+    }
+    return input;
+}
+
+// OpenImageIO does not name the packing of formats that always pack, such as PNG.
+std::string packingOf(const std::filesystem::path& file, const ImageSpec& spec) {
+    const std::string extension = lowerExtension(file);
+    const bool netpbm = extension.size() == 4 && extension[1] == 'p' && extension[3] == 'm';
+    return spec.get_string_attribute("compression", netpbm ? "none" : "");
+}
+
+}  // namespace
+
+std::string sizeText(const ImageSpec& spec) {
+    return std::to_string(spec.width) + "x" + std::to_string(spec.height) + " " +
+           spec.format.c_str() + ", channels: " + std::to_string(spec.nchannels);
+}
+
+bool hasColors(const ImageSpec& spec) {
+    return spec.nchannels >= 3 && spec.channelnames[0] == "R" && spec.channelnames[1] == "G" &&
+           spec.channelnames[2] == "B";
+}
+
+void requireSane(const std::filesystem::path& file, const ImageSpec& spec) {
+    // OpenImageIO says that it has read them, and leaves zeros.
+    const bool isOneByOne = spec.tile_width > 0 || spec.height == 1;
+    if (isTiffName(file) && isOneByOne && spec.format.size() == 8) {
+        throw Error(ErrorCode::kInput, gotExpected(file.string(),
+                                                   "64-bit numbers in tiles or one row, which "
+                                                   "OpenImageIO cannot read",
+                                                   "float32, or strips of an image of more rows"));
+    }
+    const bool flat = spec.depth <= 1 && !spec.deep;
+    if (!flat || spec.width < 1 || spec.height < 1 || spec.nchannels < 1) {
+        const std::string got = sizeText(spec) + (spec.deep ? ", deep" : "");
+        throw Error(ErrorCode::kInput, gotExpected(file.string(), got, "a flat image with pixels"));
+    }
+    const double bytes = double(spec.width) * spec.height * spec.nchannels;
+    const double held = double(std::filesystem::file_size(file));
+    if (isEnough(held, mostRatio(packingOf(file, spec)), bytes)) return;
+    throw Error(ErrorCode::kInput,
+                gotExpected(file.string(), std::to_string(std::uint64_t(held)) + " bytes",
+                            "enough for " + sizeText(spec)));
+}
+
+/// A file some of whose bytes are others for who reads it.
+class PatchedFile : public OIIO::Filesystem::IOProxy {
+  public:
+    explicit PatchedFile(const std::filesystem::path& file)
+        : IOProxy(file.string(), Read), bytes_(file) {}
+
+    const char* proxytype() const override { return "patched"; }
+    std::size_t size() const override { return std::size_t(bytes_.size()); }
+    std::size_t read(void* to, std::size_t bytes) override {
+        const std::size_t got = pread(to, bytes, m_pos);
+        m_pos += std::int64_t(got);
+        return got;
+    }
+    std::size_t pread(void* to, std::size_t bytes, std::int64_t place) override {
+        const std::size_t got = readPlain(to, bytes, place);
+        for (const auto& [at, text] : patches_) replace(at, text, std::uint64_t(place), got, to);
+        return got;
+    }
+    void patch(std::uint64_t place, std::string bytes) {
+        patches_.emplace_back(place, std::move(bytes));
+    }
+    void patch(std::uint64_t place, std::uint64_t number, int bytes, bool bigEndian) {
+        std::string text(std::size_t(bytes), '\0');
+        for (int i = 0; i < bytes; ++i)
+            text[std::size_t(bigEndian ? bytes - 1 - i : i)] = char((number >> (8 * i)) & 0xff);
+        patch(place, std::move(text));
+    }
+
+  private:
+    // What reads it may be C, through which nothing may be thrown.
+    std::size_t readPlain(void* to, std::size_t bytes, std::int64_t place) const {
+        try {
+            return place < 0 ? 0 : bytes_.read(std::uint64_t(place), to, bytes);
+        } catch (const Error&) {
+            return 0;
+        }
+    }
+    // Writes over those bytes that have been read.
+    static void replace(std::uint64_t field, const std::string& text, std::uint64_t place,
+                        std::size_t got, void* to) {
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            const std::uint64_t at = field + i;
+            if (at >= place && at - place < got) static_cast<char*>(to)[at - place] = text[i];
+        }
+    }
+
+    FileBytes bytes_;
+    std::vector<std::pair<std::uint64_t, std::string>> patches_;
+};
+
+namespace {
+
+// A TIFF as if it had one page: libtiff looks for each page from the first one on, which takes the
+// square of their number.
+void patchTiff(const TiffPages& tiff, const TiffPage& page, bool asNumbers, PatchedFile& file) {
+    constexpr std::uint64_t kBlackIsZero = 1;
+    file.patch(tiff.firstField, page.table, tiff.offsetBytes, tiff.bigEndian);
+    file.patch(page.nextField, 0, tiff.offsetBytes, tiff.bigEndian);
+    if (asNumbers && page.paletteField != 0)
+        file.patch(page.paletteField, kBlackIsZero, 2, tiff.bigEndian);
+}
+
+// What OpenImageIO makes of a number of few bits is its share of the largest of more, rounded down.
+template <typename T>
+void unstretch(int bits, std::span<std::byte> bytes) {
+    const std::uint64_t highest = (std::uint64_t{1} << bits) - 1;
+    constexpr std::uint64_t kMost = std::numeric_limits<T>::max();
+    for (std::size_t at = 0; at + sizeof(T) <= bytes.size(); at += sizeof(T)) {
+        T value;
+        std::memcpy(&value, &bytes[at], sizeof(T));
+        value = T((value * highest + kMost - 1) / kMost);
+        std::memcpy(&bytes[at], &value, sizeof(T));
+    }
+}
+
+void unstretch(const OIIO::TypeDesc& type, int bits, std::span<std::byte> bytes) {
+    if (type == OIIO::TypeDesc::UINT8) unstretch<std::uint8_t>(bits, bytes);
+    if (type == OIIO::TypeDesc::UINT16) unstretch<std::uint16_t>(bits, bytes);
+    if (type == OIIO::TypeDesc::UINT32) unstretch<std::uint32_t>(bits, bytes);
+}
+
+// How many bits numbers have as they are stored, if OpenImageIO stretches them; else 0.
+int storedBits(const std::filesystem::path& file, const ImageSpec& spec,
+               const std::optional<StoredNumbers>& said) {
+    const int bits = said               ? said->bits
+                     : isTiffName(file) ? spec.get_int_attribute("oiio:BitsPerSample", 0)
+                                        : 0;
+    const bool isUnsigned = spec.format == OIIO::TypeDesc::UINT8 ||
+                            spec.format == OIIO::TypeDesc::UINT16 ||
+                            spec.format == OIIO::TypeDesc::UINT32;
+    return isUnsigned && bits > 0 && bits < int(8 * spec.format.size()) ? bits : 0;
+}
+
+}  // namespace
+
+ImagePages::ImagePages(const std::filesystem::path& file) {
+    if (isTiffName(file)) {
+        tiff_ = walkTiff(file);
+        return;
+    }
+    if (const std::optional<StoredNumbers> said = storedNumbers(file)) isPalette_ = said->isPalette;
+    ImageSpec spec;
+    const auto input = openInput(file, nullptr, spec);
+    while (input->seek_subimage(count_, 0)) ++count_;
+    input->geterror();
+}
+
+ImageFile::ImageFile(const std::filesystem::path& file, const ImagePages& pages, int page,
+                     Samples samples)
+    : file_(file) {
+    const bool asNumbers = samples == Samples::kNumbers;
+    const std::optional<StoredNumbers> said = storedNumbers(file);
+    if (pages.tiff()) {
+        proxy_ = std::make_unique<PatchedFile>(file);
+        patchTiff(*pages.tiff(), pages.tiff()->pages.at(std::size_t(page)), asNumbers, *proxy_);
+    } else if (said && said->isPalette && asNumbers) {
+        proxy_ = std::make_unique<PatchedFile>(file);
+        for (const auto& [place, bytes] : said->asGreys) proxy_->patch(place, bytes);
+    } else {
+        page_ = page;
+    }
+    input_ = openInput(file, proxy_.get(), spec_);
+    if (page_ > 0) spec_ = input_->spec(page_);
+    // What is stored counts, as it does for wider numbers, which OpenImageIO leaves alone.
+    isInverted_ = pages.isWhiteZero(page) && spec_.format == OIIO::TypeDesc::UINT8;
+    // Colours of a palette are whole bytes.
+    const bool isColored = pages.isPalette(page) && !asNumbers;
+    if (samples != Samples::kShown && !isColored) bits_ = storedBits(file, spec_, said);
+    isPgm_ = spec_.nchannels == 1 && lowerExtension(file) == ".pgm" && isPgm(file);
+}
+
+ImageFile::~ImageFile() {
+    const SilentStderr silent;
+    input_.reset();
+}
+
+bool ImageFile::readNative(int channels, void* to) {
+    const std::size_t values =
+        std::size_t(spec_.width) * std::size_t(spec_.height) * std::size_t(channels);
+    if (isPgm_) {
+        readPgm(file_, values, {static_cast<std::byte*>(to), values * spec_.format.size()});
+        return true;
+    }
+    if (!readStored(channels, to)) return false;
+    const std::span bytes(static_cast<std::byte*>(to), values * spec_.format.size());
+    if (isInverted_)
+        for (std::byte& byte : bytes) byte = ~byte;
+    if (bits_ > 0) unstretch(spec_.format, bits_, bytes);
+    return true;
+}
+
+// OpenImageIO's read_image would take, and here clear, 64 MiB for each image.
+bool ImageFile::readStored(int channels, void* to) {
+    if (spec_.tile_width > 0) return readTiles(channels, static_cast<std::byte*>(to));
+    return input_->read_native_scanlines(page_, 0, spec_.y, spec_.y + spec_.height, 0, 0, channels,
+                                         to);
+}
+
+// One by one, for tiles go over the edges of an image: asked for all of them, OpenImageIO's TIFF
+// reader writes over the edges of what it is given.
+bool ImageFile::readTiles(int channels, std::byte* to) {
+    const std::size_t stored = std::size_t(spec_.nchannels) * spec_.format.size();
+    const std::size_t wanted = std::size_t(channels) * spec_.format.size();
+    const std::size_t tileRow = std::size_t(spec_.tile_width) * stored;
+    const std::size_t imageRow = std::size_t(spec_.width) * wanted;
+    const auto tile = std::make_unique<std::byte[]>(tileRow * std::size_t(spec_.tile_height));
+    for (int y = 0; y < spec_.height; y += spec_.tile_height) {
+        for (int x = 0; x < spec_.width; x += spec_.tile_width) {
+            if (!input_->read_native_tile(page_, 0, spec_.x + x, spec_.y + y, 0, tile.get()))
+                return false;
+            const int rows = std::min(spec_.tile_height, spec_.height - y);
+            const int columns = std::min(spec_.tile_width, spec_.width - x);
+            for (int row = 0; row < rows; ++row) {
+                const std::byte* from = tile.get() + std::size_t(row) * tileRow;
+                std::byte* into = to + std::size_t(y + row) * imageRow + std::size_t(x) * wanted;
+                for (int column = 0; column < columns; ++column, from += stored, into += wanted)
+                    std::memcpy(into, from, wanted);
+            }
+        }
+    }
+    return true;
+}
+
+bool ImageFile::readPixels(int channels, OIIO::TypeDesc type, void* to) {
+    const bool mixed = !spec_.channelformats.empty();
+    if (mixed) return input_->read_image(page_, 0, 0, channels, type, to);
+    if (spec_.format == type) return readNative(channels, to);
+    const std::size_t rowValues = std::size_t(spec_.width) * std::size_t(channels);
+    const std::size_t rowBytes = rowValues * spec_.format.size();
+    const auto native = std::make_unique<std::byte[]>(rowBytes * std::size_t(spec_.height));
+    if (!readNative(channels, native.get())) return false;
+    for (std::size_t row = 0; row < std::size_t(spec_.height); ++row) {
+        OIIO::convert_pixel_values(spec_.format, native.get() + row * rowBytes, type,
+                                   static_cast<std::byte*>(to) + row * rowValues * type.size(),
+                                   int(rowValues));
+    }
+    return true;
+}
+
+void ImageFile::read(int channels, OIIO::TypeDesc type, void* to) {
+    const SilentStderr silent;
+    const ClearedMemory cleared;
+    const bool done = readPixels(channels, type, to);
+    // Some of its readers fill up what is missing, and only leave a complaint.
+    const std::string complaint = input_->geterror();
+    if (!done || !complaint.empty()) refuse(file_, complaint, "a whole image");
+}
+
+}  // namespace deltasplat

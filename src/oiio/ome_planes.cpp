@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: The Open Microscopy Environment, "OME-TIFF specification" and the schema of June 2016.
+#include "oiio/ome_planes.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "base/memory.h"
+#include "base/text.h"
+#include "deltasplat/error.h"
+#include "oiio/xml_tags.h"
+#include "volume/length_unit.h"
+
+namespace deltasplat {
+namespace {
+
+using Attributes = std::map<std::string, std::string>;
+
+std::string textOf(const Attributes& attributes, const char* name, const std::string& missing) {
+    const auto found = attributes.find(name);
+    return found == attributes.end() ? missing : found->second;
+}
+
+template <typename T>
+std::optional<T> numberOf(const Attributes& attributes, const char* name) {
+    const std::string text = textOf(attributes, name, "");
+    T number{};
+    const auto result = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (text.empty() || result.ec != std::errc{} || result.ptr != text.data() + text.size())
+        return {};
+    return number;
+}
+
+// Planes of which a block says where they are.
+struct Block {
+    std::optional<std::int64_t> page, count;
+    std::array<std::int64_t, 3> first{};  // z, c, t
+    std::string file;
+};
+
+struct Pixels {
+    Attributes attributes;
+    std::vector<Block> blocks;
+    std::int64_t samples = 0;  // of a channel; 0: not said
+};
+
+// Elements come as they stand in the text: what a picture has behind it.
+std::vector<Pixels> pixelsIn(const std::string& text) {
+    std::vector<Pixels> all;
+    XmlTags tags(text);
+    while (const std::optional<XmlTag> tag = tags.next()) {
+        const Attributes& attributes = tag->attributes;
+        if (tag->name == "Pixels") {
+            all.push_back({attributes, {}, 0});
+        } else if (all.empty()) {
+            continue;
+        } else if (tag->name == "Channel" && all.back().samples == 0) {
+            all.back().samples = numberOf<std::int64_t>(attributes, "SamplesPerPixel").value_or(0);
+        } else if (tag->name == "TiffData") {
+            Block block{numberOf<std::int64_t>(attributes, "IFD"),
+                        numberOf<std::int64_t>(attributes, "PlaneCount"),
+                        {},
+                        {}};
+            const std::array<const char*, 3> names{"FirstZ", "FirstC", "FirstT"};
+            for (std::size_t i = 0; i < names.size(); ++i)
+                block.first[i] = numberOf<std::int64_t>(attributes, names[i]).value_or(0);
+            all.back().blocks.push_back(block);
+        } else if (tag->name == "UUID" && !all.back().blocks.empty()) {
+            all.back().blocks.back().file = textOf(attributes, "FileName", "");
+        }
+    }
+    return all;
+}
+
+// The name that planes have which are in a file: its own, or that it had.
+std::string nameIn(const std::vector<Pixels>& all, const std::string& name) {
+    std::set<std::string> names;
+    for (const Pixels& pixels : all)
+        for (const Block& block : pixels.blocks)
+            if (!block.file.empty()) names.insert(block.file);
+    return names.size() == 1 ? *names.begin() : name;
+}
+
+// Which of z, c and t counts fastest, next and last.
+std::array<std::size_t, 3> orderOf(const Attributes& attributes) {
+    const std::string text = textOf(attributes, "DimensionOrder", "XYZCT");
+    const std::string letters = "ZCT";
+    std::array<std::size_t, 3> order{0, 1, 2};
+    if (text.size() != 5) return order;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t axis = letters.find(text[i + 2]);
+        if (axis == std::string::npos) return {0, 1, 2};
+        order[i] = axis;
+    }
+    return order;
+}
+
+void setSpacing(const Attributes& attributes, OmePicture& picture) {
+    const std::array<const char*, 3> names{"PhysicalSizeX", "PhysicalSizeY", "PhysicalSizeZ"};
+    std::array<std::string, 3> units;
+    for (int axis = 0; axis < 3; ++axis) {
+        const char* const name = names[std::size_t(axis)];
+        const double size = numberOf<double>(attributes, name).value_or(0);
+        if (!(size > 0) || !std::isfinite(size)) continue;
+        picture.spacing[axis] = size;
+        std::string& unit = units[std::size_t(axis)];
+        unit = lengthUnitNamed(textOf(attributes, (name + std::string("Unit")).c_str(), "um"));
+        if (picture.lengthUnit.empty()) picture.lengthUnit = unit;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::string& unit = units[std::size_t(axis)];
+        if (unit.empty() || unit == picture.lengthUnit) continue;
+        picture.spacing[axis] *= millimetresIn(unit) / millimetresIn(picture.lengthUnit);
+    }
+}
+
+// Planes in the order in which pages hold them. Any of them is named by the last block that names
+// it; blocks are taken from the last one on and step over planes that are named, so that text that
+// repeats itself costs no more than its length and the number of planes.
+class NamedPlanes {
+  public:
+    explicit NamedPlanes(std::size_t planes) : next_(planes + 1) {
+        std::iota(next_.begin(), next_.end(), std::size_t{0});
+    }
+
+    // @return the first plane from this one on that nobody has named, or the number of planes
+    std::size_t firstUnnamed(std::size_t plane) {
+        std::size_t first = plane;
+        while (next_[first] != first) first = next_[first];
+        while (next_[plane] != first) plane = std::exchange(next_[plane], first);
+        return first;
+    }
+    void setNamed(std::size_t plane) { next_[plane] = plane + 1; }
+
+  private:
+    std::vector<std::size_t> next_;
+};
+
+// @param own  the name of planes that are in the file
+void setPages(const Pixels& pixels, const std::string& own, OmePicture& picture) {
+    const std::array<std::int64_t, 3> sizes{picture.slices, picture.channels, picture.times};
+    const std::array<std::int64_t, 3> strides{1, sizes[0], sizes[0] * sizes[1]};
+    const std::array<std::size_t, 3> order = orderOf(pixels.attributes);
+    constexpr std::int64_t kFarthest = std::int64_t{1} << 62;  // that sums can pass without harm
+    const std::size_t planes = picture.pages.size();
+    NamedPlanes named(planes);
+    const std::vector<Block> all(1);
+    const std::vector<Block>& blocks = pixels.blocks.empty() ? all : pixels.blocks;
+    for (std::size_t later = 0; later < blocks.size(); ++later) {
+        const Block* const block = &blocks[blocks.size() - 1 - later];
+        std::int64_t start = 0, stride = 1;
+        bool isInside = true;
+        for (const std::size_t axis : order) {
+            isInside = isInside && block->first[axis] >= 0 && block->first[axis] < sizes[axis];
+            start += isInside ? block->first[axis] * stride : 0;
+            stride *= sizes[axis];
+        }
+        if (!isInside) continue;
+        const auto first = std::size_t(start);
+        const auto count = block->count.value_or(block->page ? 1 : std::int64_t(planes));
+        const std::size_t end =
+            first + std::size_t(std::clamp<std::int64_t>(count, 0, std::int64_t(planes - first)));
+        const bool isHere = block->file.empty() || block->file == own;
+        for (std::size_t i = named.firstUnnamed(first); i < end; i = named.firstUnnamed(i)) {
+            named.setNamed(i);
+            if (!isHere) {
+                picture.otherFile = block->file;
+                continue;
+            }
+            auto left = std::int64_t(i);
+            std::int64_t place = 0;
+            for (const std::size_t axis : order) {
+                place += left % sizes[axis] * strides[axis];
+                left /= sizes[axis];
+            }
+            picture.pages[std::size_t(place)] =
+                std::min(block->page.value_or(0), kFarthest) + std::int64_t(i - first);
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<OmePicture> readOme(const std::filesystem::path& file, const std::string& text,
+                                int samples) {
+    constexpr std::int64_t kMostPlanes = std::int64_t{1} << 22;
+    constexpr double kPerByte = 20;  // of text: what tags and pictures of the shortest kind take
+    const std::string where = file.string();
+    requireClaimedMemory(where, kPerByte * double(text.size()));
+    const std::vector<Pixels> all = pixelsIn(text);
+    const std::string own = nameIn(all, file.filename().string());
+    std::vector<OmePicture> pictures;
+    double planes = 0;  // of all pictures
+    for (const Pixels& pixels : all) {
+        OmePicture picture;
+        const auto size = [&](const char* name) {
+            if (!pixels.attributes.contains(name)) return std::int64_t{1};
+            const auto number = numberOf<std::int64_t>(pixels.attributes, name);
+            if (number && *number >= 1 && *number <= kMostPlanes) return *number;
+            throw Error(ErrorCode::kInput,
+                        gotExpected(where, name + (" " + printable(pixels.attributes.at(name))),
+                                    "a number of planes"));
+        };
+        picture.slices = size("SizeZ");
+        picture.channels = size("SizeC");
+        picture.times = size("SizeT");
+        // Samples of a pixel are channels that share a plane.
+        const std::int64_t shared = pixels.samples > 0 ? pixels.samples : samples;
+        if (shared > 1 && picture.channels % shared == 0) picture.channels /= shared;
+        const double ofPicture =
+            double(picture.slices) * double(picture.channels) * double(picture.times);
+        planes += ofPicture;
+        if (planes > double(kMostPlanes))
+            throw Error(ErrorCode::kInput, gotExpected(where, numberText(planes) + " planes",
+                                                       "at most " + std::to_string(kMostPlanes)));
+        picture.pages.assign(std::size_t(ofPicture), -1);
+        setSpacing(pixels.attributes, picture);
+        setPages(pixels, own, picture);
+        pictures.push_back(std::move(picture));
+    }
+    return pictures;
+}
+
+}  // namespace deltasplat

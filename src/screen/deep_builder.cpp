@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: Tom Lokovic and Eric Veach, "Deep Shadow Maps", SIGGRAPH 2000, section 3: what is
+// filtered is how much is seen down to a depth, not what is there at it. Layers that are resampled
+// one by one and put over each other would not be the resampled picture: where both end at one edge
+// of a pixel, what shows through one of them would be hidden by half of the other. Deviates in that
+// colour goes the same way, and in that depths are those of slices, the same for all pixels.
+#include "screen/deep_builder.h"
+
+#include <algorithm>
+#include <atomic>
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+
+namespace deltasplat {
+
+namespace {
+
+// Columns so far apart that a run of their own each takes less memory.
+constexpr int kFarApart = 4;
+// Where less than that is seen of what lies behind, half floats have hardly room for more alpha,
+// and filters overshoot by more.
+constexpr double kLeastSeen = 0x1p-10;
+
+glm::vec4 colorAt(const Image& image, int x, int y) {
+    const float* rgba = image.pixel(x, y);
+    return {rgba[0], rgba[1], rgba[2], rgba[3]};
+}
+
+}  // namespace
+
+DeepBuilder::DeepBuilder(glm::ivec2 size, int slicesPerSample)
+    : shown_(size), slicesPerSample_(slicesPerSample), rows_(std::size_t(size.y)) {}
+
+void DeepBuilder::require(double bytes) const {
+    requireMemory(
+        "samples of a deep picture, `slicesPerSample` " + std::to_string(slicesPerSample_), bytes);
+}
+
+void DeepBuilder::add(const Image& picture, double front, double back) {
+    std::atomic<std::size_t> changed = 0;
+    parallelFor(rows_.size(), [&](std::size_t y) { changed += findChanges(picture, int(y)); });
+    if (changed == 0) return;
+    require(double(changed) * sizeof(glm::vec4));
+    kept_ += changed;
+    stages_.push_back({depths_, front, back});
+    parallelFor(rows_.size(), [&](std::size_t y) { keepChanges(picture, int(y)); });
+}
+
+// Returns how many pixels are to be kept of a row.
+std::size_t DeepBuilder::findChanges(const Image& picture, int y) {
+    std::vector<Columns>& changed = rows_[std::size_t(y)].changed;
+    changed.clear();
+    std::size_t count = 0;
+    for (int x = 0; x < picture.size.x; ++x) {
+        if (colorAt(picture, x, y) == colorAt(shown_, x, y)) continue;
+        if (changed.empty() || x - changed.back().last >= kFarApart) changed.push_back({x, x});
+        count += std::size_t(x + 1 - changed.back().last);
+        changed.back().last = x + 1;
+    }
+    return count;
+}
+
+void DeepBuilder::keepChanges(const Image& picture, int y) {
+    Row& row = rows_[std::size_t(y)];
+    for (const Columns& columns : row.changed) {
+        Run run{stages_.size() - 1, columns.first, {}};
+        run.colors.reserve(std::size_t(columns.last - columns.first));
+        for (int x = columns.first; x < columns.last; ++x)
+            run.colors.push_back(colorAt(picture, x, y));
+        std::copy_n(picture.pixel(columns.first, y), 4 * run.colors.size(),
+                    shown_.pixel(columns.first, y));
+        row.runs.push_back(std::move(run));
+    }
+}
+
+DeepImage DeepBuilder::finish() {
+    // Of rows that are done runs are gone.
+    require(double(kept_) * (sizeof(DeepSample) - sizeof(glm::vec4)) +
+            double(shown_.rgba.size()) / 4 * sizeof(std::size_t));
+    DeepImage image{shown_.size, std::vector<DeepRow>(rows_.size())};
+    parallelFor(rows_.size(), [&](std::size_t y) { image.rows[y] = makeRow(int(y)); });
+    return image;
+}
+
+DeepRow DeepBuilder::makeRow(int y) {
+    const std::vector<Run> runs = std::exchange(rows_[std::size_t(y)].runs, {});
+    const auto width = std::size_t(shown_.size.x);
+    // Sort states by pixels: those of one stay in the order of stages.
+    std::vector<std::size_t> begins(width + 1);
+    for (const Run& run : runs)
+        for (std::size_t i = 0; i < run.colors.size(); ++i)
+            ++begins[std::size_t(run.first) + i + 1];
+    for (std::size_t x = 0; x < width; ++x) begins[x + 1] += begins[x];
+    std::vector<State> states(begins.back());
+    std::vector<std::size_t> next(begins.begin(), begins.end() - 1);
+    for (const Run& run : runs)
+        for (std::size_t i = 0; i < run.colors.size(); ++i)
+            states[next[std::size_t(run.first) + i]++] = {run.stage, run.colors[i]};
+    DeepRow row;
+    row.begins.reserve(width + 1);
+    row.samples.reserve(states.size());
+    std::vector<State> ofPixel;
+    for (std::size_t x = 0; x < width; ++x) {
+        ofPixel.assign(states.begin() + std::ptrdiff_t(begins[x]),
+                       states.begin() + std::ptrdiff_t(begins[x + 1]));
+        addSamples({int(x), y}, ofPixel, row);
+        row.begins.push_back(row.samples.size());
+    }
+    row.samples.shrink_to_fit();
+    return row;
+}
+
+void DeepBuilder::addSamples(glm::ivec2 pixel, std::vector<State>& states, DeepRow& row) const {
+    if (states.empty()) return;
+    // Filters overshoot, so that a pixel may become darker by what is put behind. No sample takes
+    // light away: what is too much is left out of those in front.
+    for (std::size_t i = states.size() - 1; i > 0; --i)
+        states[i - 1].color = glm::min(states[i - 1].color, states[i].color);
+    // All samples are of one region; states that change nothing may be another's.
+    std::optional<DepthLine> line;
+    glm::dvec4 before(0);
+    for (const State& state : states) {
+        // The last sample that lets hardly anything through shows all that does get through.
+        const bool isLast = 1 - double(state.color.a) < kLeastSeen;
+        const glm::dvec4 color(isLast ? states.back().color : state.color);
+        if (color == before) continue;
+        const Stage& stage = stages_[state.stage];
+        if (!line) line = stage.depths->lineAt(pixel.x, pixel.y);
+        row.samples.push_back(sampleOf(*line, stage, (color - before) / (1 - before.a)));
+        if (isLast) break;
+        before = color;
+    }
+}
+
+DeepSample DeepBuilder::sampleOf(const DepthLine& line, const Stage& stage,
+                                 const glm::dvec4& color) const {
+    const double nearest = stage.depths->nearest();
+    const auto depthAt = [&](double slice) { return float(std::max(line.at(slice), nearest)); };
+    DeepSample sample{glm::vec4(color), depthAt(stage.front), depthAt(stage.back)};
+    // Rounding must not turn it around.
+    sample.zBack = std::max(sample.z, sample.zBack);
+    return sample;
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: Philippe Lacroute and Marc Levoy, "Fast Volume Rendering Using a Shear-Warp
+// Factorization of the Viewing Transformation", 1994, the warp of perspective projections. Deviates
+// in that a picture may be made of several factorizations' regions, as of a cube's faces.
+#include "screen/warp_region.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/gtc/type_precision.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+
+#include "base/parallel.h"
+#include "base/portable_math.h"
+#include "deltasplat/delta/delta_grid.h"
+#include "screen/raster_reader.h"
+#include "view/picture_rays.h"
+
+namespace deltasplat {
+namespace {
+
+// Filters of growing width, each made when it is first asked for.
+class FilterLadder {
+  public:
+    explicit FilterLadder(WarpFilter filter) : filter_(filter) {}
+
+    // Returns which filter suits so many raster pixels a picture pixel, by their square.
+    static int rungOf(double squaredStretch) {
+        if (!(squaredStretch > 1)) return 0;
+        // The leading bits of a float are its logarithm, nearly: off by less than a rung.
+        const auto bits = std::bit_cast<std::uint32_t>(float(std::min(squaredStretch, kMost)));
+        constexpr std::uint32_t kOne = 0x3F800000;
+        return int((bits - kOne + (1u << 20)) >> 21);
+    }
+
+    const FilterTable& at(int rung) {
+        if (rung == 0) return narrowestFilter(filter_);
+        const auto i = std::size_t(rung);
+        std::call_once(made_[i], [&] {
+            const double stretch = portable::exp(0.69314718055994531 / kRungs * rung);
+            filters_[i] = std::make_unique<FilterTable>(filter_, stretch);
+        });
+        return *filters_[i];
+    }
+
+    // The largest gain of all that were asked for.
+    double gain() const {
+        double largest = narrowestFilter(filter_).gain();
+        for (const auto& filter : filters_) {
+            if (filter) largest = std::max(largest, filter->gain());
+        }
+        return largest;
+    }
+
+  private:
+    static constexpr int kRungs = 8;                  // each twice the width
+    static constexpr double kMost = double(1 << 28);  // 16384 squared
+    static constexpr std::size_t kCount = 14 * 8 + 2;
+
+    WarpFilter filter_;
+    std::array<std::once_flag, kCount> made_;
+    std::array<std::unique_ptr<FilterTable>, kCount> filters_;
+};
+
+class RegionWarper {
+  public:
+    RegionWarper(const Raster& raster, const Camera& camera, const Factorization& view,
+                 const Factorization& thin, const BasePlane& plane, WarpFilter filter,
+                 const PicturePart& part)
+        : raster_(raster),
+          tiles_(raster),
+          order_(sliceOrder(view.sliceAxis)),
+          slopeStep_(view.slopeStep),
+          rays_(camera, glm::inverse(view.worldFromStep)),
+          slopeScale_(thin.slopeLimit / view.slopeLimit),
+          flat_(camera.projection == Projection::kPerspective),
+          plane_(plane),
+          part_(part),
+          ladder_(filter) {
+        // Elsewhere it ends where there is nothing more.
+        const glm::ivec2 end = raster.origin() + raster.extent();
+        for (int axis = 0; axis < 2; ++axis) {
+            if (raster.origin()[axis] <= plane.limits().min[axis]) goesOnBefore_[axis] = true;
+            if (end[axis] >= plane.limits().max[axis]) goesOnBehind_[axis] = true;
+        }
+    }
+
+    void run() {
+        const int first = part_.first.y / kBand;
+        const int end = (part_.last().y + kBand - 1) / kBand;
+        parallelFor(std::size_t(std::max(end - first, 0)), [&](std::size_t band) {
+            const int y = (first + int(band)) * kBand;
+            for (int x = part_.first.x / kStretch * kStretch; x < part_.last().x; x += kStretch)
+                warpTile({x, y});
+        });
+    }
+
+    double gain() const { return ladder_.gain() * ladder_.gain(); }
+
+  private:
+    // What is looked at at once to find out whether the raster is empty there.
+    static constexpr int kBand = 8;
+    static constexpr int kStretch = 16;
+
+    // What a pixel reads.
+    struct Place {
+        glm::dvec2 position{0.0};  // on the raster, from its origin
+        glm::u8vec2 rungs{0};      // filters along the raster's axes
+        bool belongs = false;
+    };
+
+    // Raster position, from its origin, that a line of sight in steps leads to.
+    glm::dvec2 positionOf(const glm::dvec3& steps) const {
+        const glm::dvec2 slope = slopeScale_ * glm::dvec2(steps.z, steps.y) / steps.x;
+        return plane_.pixelOf(slope) - glm::dvec2(raster_.origin());
+    }
+
+    // Whether a line of sight is one of those that the region is made of.
+    bool hasSlope(const glm::dvec3& steps) const {
+        return !slopeStep_ || (isNearSlope(slopeStep_->x, steps.y, steps.x) &&
+                               isNearSlope(slopeStep_->y, steps.z, steps.x));
+    }
+
+    // @param alongX,alongY  by how much steps change from one pixel to the next
+    Place placeOf(const glm::dvec3& steps, const glm::dvec3& alongX,
+                  const glm::dvec3& alongY) const {
+        Place place;
+        place.belongs = belongs(steps, order_) && hasSlope(steps);
+        if (!place.belongs) return place;
+        place.position = positionOf(steps);
+        const double rasterPerStep = slopeScale_ / plane_.spacing() / steps.x;
+        const glm::dvec2 slope = glm::dvec2(steps.z, steps.y) / steps.x;
+        const auto moved = [&](const glm::dvec3& along) {
+            return rasterPerStep * (glm::dvec2(along.z, along.y) - slope * along.x);
+        };
+        const glm::dvec2 x = moved(alongX);
+        const glm::dvec2 y = moved(alongY);
+        // In whichever direction is worst.
+        glm::dvec2 squares = x * x + y * y;
+        for (int axis = 0; axis < 2; ++axis) {
+            const double most = mostStretch(place.position, axis);
+            squares[axis] = std::min(squares[axis], most * most);
+        }
+        place.rungs = {FilterLadder::rungOf(squares.x), FilterLadder::rungOf(squares.y)};
+        return place;
+    }
+
+    // Where the plane ends and the volume goes on, filters stay on the plane: there a pixel may be
+    // wider than what is left of it, since its region is, or since its angle is wide.
+    double mostStretch(glm::dvec2 position, int axis) const {
+        constexpr double kReach = 2.1;  // of a filter of stretch 1, and of rungs that are rounded
+        double room = std::numeric_limits<double>::infinity();
+        if (goesOnBefore_[axis]) room = std::min(room, position[axis]);
+        if (goesOnBehind_[axis]) room = std::min(room, raster_.extent()[axis] - 1 - position[axis]);
+        return std::max(room, 0.0) / kReach;
+    }
+
+    // Whether a glance at a tile's corners shows that there is nothing: rays between those of a
+    // flat picture lie between them.
+    bool isEmpty(glm::ivec2 first, glm::ivec2 last) const {
+        if (!flat_ || last - first != glm::ivec2(kStretch, kBand) - 1) return false;
+        glm::dvec2 low(0), high(0);
+        const glm::ivec2 corners[] = {first, {last.x, first.y}, last, {first.x, last.y}};
+        for (int i = 0; i < 4; ++i) {
+            const glm::dvec3 steps = rays_.at(corners[i].x, corners[i].y);
+            if (!(steps.x > 0)) return false;
+            const glm::dvec2 place = positionOf(steps);
+            low = i == 0 ? place : glm::min(low, place);
+            high = i == 0 ? place : glm::max(high, place);
+        }
+        // Filters reach as many pixels of the picture as they have taps at its finest.
+        const glm::dvec2 reach = 3.0 + 3.0 * (high - low) / double(kBand - 1);
+        const glm::dvec2 before(raster_.min - raster_.origin());
+        low = glm::max(glm::floor(low - reach) - before, glm::dvec2(0));
+        high = glm::min(glm::ceil(high + reach) - before, glm::dvec2(raster_.size - 1));
+        return !(low.x <= high.x && low.y <= high.y) ||
+               !tiles_.anyIn(glm::ivec2(low), glm::ivec2(high));
+    }
+
+    // Tiles lie alike, whatever the part.
+    void warpTile(glm::ivec2 first) {
+        glm::ivec2 last = glm::min(first + glm::ivec2(kStretch, kBand), part_.size);
+        if (isEmpty(first, last - 1)) return;
+        first = glm::max(first, part_.first);
+        last = glm::min(last, part_.last());
+        std::array<Place, kStretch> places;
+        for (int y = first.y; y < last.y; ++y) {
+            for (int x = first.x; x < last.x; ++x) {
+                places[std::size_t(x - first.x)] =
+                    placeOf(rays_.at(x, y), rays_.alongX(x, y), rays_.alongY(x, y));
+            }
+            warpRow({first.x, y}, std::span(places).first(std::size_t(last.x - first.x)));
+        }
+    }
+
+    // Samples pixels with the same filters, whose taps lie inside of the raster, together, and
+    // others one by one.
+    void warpRow(glm::ivec2 first, std::span<const Place> places) {
+        std::array<FixedPosition, kStretch> run;
+        std::size_t count = 0;
+        const auto flush = [&](std::size_t end) {
+            if (count == 0) return;
+            const glm::u8vec2 rungs = places[end - 1].rungs;
+            sampleAt(raster_, ladder_.at(rungs.x), ladder_.at(rungs.y), run.data(), int(count),
+                     part_.pixel(first.x + int(end - count), first.y));
+            count = 0;
+        };
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const Place& place = places[i];
+            if (count > 0 && place.rungs != places[i - 1].rungs) flush(i);
+            if (!place.belongs) {
+                flush(i);
+                continue;
+            }
+            const FilterTable& filterX = ladder_.at(place.rungs.x);
+            const FilterTable& filterY = ladder_.at(place.rungs.y);
+            const glm::dvec2 reach(filterX.taps() / 2, filterY.taps() / 2);
+            const glm::dvec2 last(raster_.extent() - 1);
+            const double padded = filterX.paddedTaps() - filterX.taps() + 1;
+            if (all(glm::greaterThanEqual(place.position, reach)) &&
+                all(glm::lessThanEqual(place.position, last - reach - glm::dvec2(padded, 1)))) {
+                run[count++] = fixedPosition(place.position, raster_);
+                continue;
+            }
+            flush(i);
+            if (all(glm::greaterThan(place.position, -reach)) &&
+                all(glm::lessThan(place.position, last + reach))) {
+                EdgeSampler(raster_, filterX, filterY)
+                    .sample(fixedPosition(place.position, raster_),
+                            part_.pixel(first.x + int(i), first.y));
+            }
+        }
+        flush(places.size());
+    }
+
+    const Raster& raster_;
+    RasterTiles tiles_;
+    glm::ivec3 order_;
+    std::optional<glm::ivec2> slopeStep_;
+    PictureRays rays_;
+    double slopeScale_;
+    bool flat_;
+    const BasePlane& plane_;
+    const PicturePart& part_;
+    FilterLadder ladder_;
+    glm::bvec2 goesOnBefore_{false};  // along each axis: whether the plane ends the raster
+    glm::bvec2 goesOnBehind_{false};
+};
+
+}  // namespace
+
+double warpRegion(const Raster& raster, const Camera& camera, const Factorization& view,
+                  const Factorization& thin, const BasePlane& plane, WarpFilter filter,
+                  const PicturePart& part) {
+    if (raster.size.x <= 0 || raster.size.y <= 0) return 1;
+    RegionWarper warper(raster, camera, view, thin, plane, filter, part);
+    warper.run();
+    return warper.gain();
+}
+
+PlaneBox readByRegion(const Camera& camera, const Factorization& view, const Factorization& thin,
+                      const BasePlane& plane, const PixelBox& pixels) {
+    // As many times as a filter is wide, it reaches twice, and rungs may be wider, and are read
+    // with some taps more.
+    constexpr double kReach = 2.5;
+    constexpr double kLeast = 8;
+    constexpr double kFar = 1 << 30;
+    const PictureRays rays(camera, glm::inverse(view.worldFromStep));
+    const glm::ivec3 order = sliceOrder(view.sliceAxis);
+    const double slopeScale = thin.slopeLimit / view.slopeLimit;
+    glm::dvec2 low(kFar), high(-kFar);
+    for (int y = pixels.min.y; y < pixels.max.y; ++y) {
+        for (int x = pixels.min.x; x < pixels.max.x; ++x) {
+            const glm::dvec3 steps = rays.at(x, y);
+            if (!belongs(steps, order)) continue;
+            const glm::dvec2 slope = glm::dvec2(steps.z, steps.y) / steps.x;
+            const auto moved = [&](const glm::dvec3& along) {
+                return glm::dvec2(along.z, along.y) - slope * along.x;
+            };
+            const glm::dvec2 right = moved(rays.alongX(x, y));
+            const glm::dvec2 down = moved(rays.alongY(x, y));
+            const double scale = slopeScale / plane.spacing() / steps.x;
+            const glm::dvec2 reach =
+                kReach * scale * glm::sqrt(right * right + down * down) + kLeast;
+            const glm::dvec2 position = plane.pixelOf(slopeScale * slope);
+            low = glm::min(low, position - reach);
+            high = glm::max(high, position + reach);
+        }
+    }
+    if (high.x < low.x) return {};
+    return {glm::ivec2(glm::clamp(glm::floor(low), -kFar, kFar)),
+            glm::ivec2(glm::clamp(glm::ceil(high), -kFar, kFar)) + 1};
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/math/Coord.h>
+
+#include <bit>
+#include <cstdint>
+
+#include "deltasplat/ingest/slot.h"
+#include "volume/code_tree.h"
+
+// OpenVDB's 8x8x8 blocks as they lie along a slice axis.
+
+namespace deltasplat {
+
+/// How far apart neighbours along x, y and z lie in a leaf's buffer.
+inline constexpr glm::ivec3 kLeafStride{64, 8, 1};
+
+/// Returns the place of a block's first voxel.
+/// @param position  of the block in (slice, u, v) order, divided by 8
+inline openvdb::Coord blockOrigin(const glm::ivec3& position, int sliceAxis) {
+    const glm::ivec3 xyz = 8 * fromSliceOrder(position, sliceAxis);
+    return {xyz.x, xyz.y, xyz.z};
+}
+
+/// Calls use(place, n) for the voxels of a block from `first` to `last`, slice by slice: `place` is
+/// (slice, u, v), 0..7 each, and n where the voxel lies in a leaf's buffer.
+template <typename Use>
+void forLeafVoxels(int sliceAxis, const glm::ivec3& first, const glm::ivec3& last, const Use& use) {
+    const glm::ivec3 stride = toSliceOrder(kLeafStride, sliceAxis);
+    for (int s = first.x; s <= last.x; ++s) {
+        for (int u = first.y; u <= last.y; ++u) {
+            for (int v = first.z; v <= last.z; ++v)
+                use(glm::ivec3(s, u, v), s * stride.x + u * stride.y + v * stride.z);
+        }
+    }
+}
+
+/// Calls use(place, n) for all voxels of a block, slice by slice, as above.
+template <typename Use>
+void forLeafVoxels(int sliceAxis, const Use& use) {
+    forLeafVoxels(sliceAxis, glm::ivec3(0), glm::ivec3(7), use);
+}
+
+/// Writes the empty slot where a leaf's voxels are inactive. kStep: as below.
+template <int kStepX, int kStepY, int kStepZ, typename Out>
+void clearInactive(const CodeTree::Leaf& leaf, Out* out) {
+    if (leaf.isDense()) return;
+    for (int x = 0; x < 8; ++x) {
+        std::uint64_t inactive = ~leaf.getValueMask().getWord<std::uint64_t>(openvdb::Index(x));
+        for (; inactive != 0; inactive &= inactive - 1) {
+            const int n = std::countr_zero(inactive);
+            out[x * kStepX + (n >> 3) * kStepY + (n & 7) * kStepZ] = kEmptySlot;
+        }
+    }
+}
+
+/// Reads a leaf as readLeafSlices does. kStep: how far neighbours along x, y and z lie in `out`; it
+/// is several times as fast if the compiler knows.
+template <int kStepX, int kStepY, int kStepZ, typename SlotOf, typename Out>
+void readLeafWithSteps(const CodeTree::Leaf& leaf, const SlotOf& slotOf, Out* out) {
+    const Code* codes = leaf.buffer().data();
+    for (int x = 0; x < 8; ++x) {
+        for (int y = 0; y < 8; ++y) {
+            for (int z = 0; z < 8; ++z) {
+                out[x * kStepX + y * kStepY + z * kStepZ] = Out(slotOf(*codes++));
+            }
+        }
+    }
+    clearInactive<kStepX, kStepY, kStepZ>(leaf, out);
+}
+
+/// Calls use.template operator()<kStepX, kStepY, kStepZ>() with the steps of slices along an axis.
+template <typename Use>
+void withLeafSteps(int sliceAxis, const Use& use) {
+    if (sliceAxis == 0) return use.template operator()<64, 8, 1>();
+    if (sliceAxis == 1) return use.template operator()<1, 64, 8>();
+    use.template operator()<8, 1, 64>();
+}
+
+/// Reads a leaf of codes: slotOf(code) where a voxel is active, otherwise empty.
+/// @param out  [slice][u][v]
+template <typename SlotOf, typename Out>
+void readLeafSlices(const CodeTree::Leaf& leaf, int sliceAxis, const SlotOf& slotOf, Out* out) {
+    withLeafSteps(sliceAxis, [&]<int kStepX, int kStepY, int kStepZ>() {
+        readLeafWithSteps<kStepX, kStepY, kStepZ>(leaf, slotOf, out);
+    });
+}
+
+/// Writes the empty slot where a leaf's voxels are inactive.
+/// @param out  [slice][u][v]
+template <typename Out>
+void clearInactiveSlices(const CodeTree::Leaf& leaf, int sliceAxis, Out* out) {
+    withLeafSteps(sliceAxis, [&]<int kStepX, int kStepY, int kStepZ>() {
+        clearInactive<kStepX, kStepY, kStepZ>(leaf, out);
+    });
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,429 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: "Accelerating Footprint Method Based on Comparability of Consecutive Image Slices",
+// equation 9. Deviates in that a change is kept as what a voxel becomes: what it was is known to
+// who walks the slices in order.
+#include "words/packed_deltas.h"
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <iterator>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "base/bits.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/sorting.h"
+#include "deltasplat/error.h"
+#include "words/column_packer.h"
+#include "words/joined_tiles.h"
+#include "words/mixed_sight.h"
+#include "words/slice_joiner.h"
+#include "words/slot_holder.h"
+
+namespace deltasplat {
+namespace {
+
+// Adds blocks in which nothing is seen but what the painter adds, in the order in which they are.
+// @param box  of the volume, which may be a group of what the painter knows
+void addBlocks(const BlockSet& more, const IndexBox& box, int sliceAxis,
+               std::vector<CodeBlock>& blocks) {
+    const auto isInBox = [&](const glm::ivec3& position) {
+        const glm::ivec3 first = 8 * position;
+        return first == glm::clamp(first, box.min - 7, box.max);
+    };
+    std::vector<CodeBlock> added;
+    for (const glm::ivec3& position : more.positions)
+        if (isInBox(position)) added.push_back({toSliceOrder(position, sliceAxis)});
+    std::sort(added.begin(), added.end(), comesBefore);
+    std::vector<CodeBlock> all;
+    std::set_union(blocks.begin(), blocks.end(), added.begin(), added.end(),
+                   std::back_inserter(all), comesBefore);
+    blocks = std::move(all);
+}
+
+// Cuts the blocks into runs of whole columns, for each of which there is one packer. The cuts
+// depend on the volume alone.
+// @param atRows  cut behind each row of columns as well
+std::vector<Columns> cutAtColumns(const std::vector<CodeBlock>& blocks, bool atRows) {
+    const std::ptrdiff_t least = std::max<std::ptrdiff_t>(128, std::ptrdiff_t(blocks.size()) / 256);
+    std::vector<Columns> runs;
+    const std::vector<std::size_t> columns = runBegins(blocks, shareColumn);
+    const CodeBlock* begin = blocks.data();
+    for (std::size_t i = 1; i < columns.size(); ++i) {
+        const CodeBlock* const end = blocks.data() + columns[i];
+        const bool isLast = columns[i] == blocks.size();
+        const bool endsRow = isLast || end->position.y != end[-1].position.y;
+        if (end - begin < least && !isLast && !(endsRow && atRows)) continue;
+        runs.push_back({begin, end});
+        begin = end;
+    }
+    return runs;
+}
+
+// Room for words that are not in order yet: there is as much as packers use at once, for each takes
+// what another one is done with. New memory takes the system longer than words take to be made.
+class WordRooms {
+  public:
+    std::vector<PackedColumns> take() {
+        const std::lock_guard lock(mutex_);
+        if (rooms_.empty()) return {};
+        std::vector<PackedColumns> room = std::move(rooms_.back());
+        rooms_.pop_back();
+        return room;
+    }
+    void give(std::vector<PackedColumns> room) {
+        const std::lock_guard lock(mutex_);
+        rooms_.push_back(std::move(room));
+    }
+
+  private:
+    std::mutex mutex_;
+    std::vector<std::vector<PackedColumns>> rooms_;
+};
+
+// Returns the packed columns ordered by u, then v.
+// @param rowOf  rowOf(i): what tells packers of one row of columns from those of others; these have
+//               several rows each where blocks are halved along u, or joined
+template <typename RowOf>
+std::vector<PackedColumns*> inOrder(std::vector<ColumnPacker>& packers, const RowOf& rowOf) {
+    std::vector<PackedColumns*> columns;
+    for (std::size_t first = 0; first < packers.size();) {
+        std::size_t last = first + 1;
+        while (last < packers.size() && rowOf(last) == rowOf(first)) ++last;
+        for (std::size_t row = 0; row < packers[first].rows().size(); ++row)
+            for (std::size_t i = first; i < last; ++i) columns.push_back(&packers[i].rows()[row]);
+        first = last;
+    }
+    return columns;
+}
+
+}  // namespace
+
+IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, const Subdivision& parts) {
+    const IndexBox own = permutedBox(box, sliceAxis);
+    if (parts.joined > 1) {
+        IndexBox joined = own;
+        for (const glm::ivec2& slant : parts.joinedSlants()) {
+            joined.min = glm::min(joined.min, own.min + glm::ivec3(0, slant));
+            joined.max = glm::max(joined.max, own.max + glm::ivec3(0, slant));
+        }
+        const glm::ivec3 of(parts.joined, parts.joinedWithin, parts.joinedWithin);
+        for (int axis = 0; axis < 3; ++axis) {
+            joined.min[axis] = floorDiv(joined.min[axis], of[axis]);
+            joined.max[axis] = floorDiv(joined.max[axis], of[axis]);
+        }
+        return joined;
+    }
+    const glm::ivec3 per(parts.slices, parts.within, parts.within);
+    return {(own.min - parts.origin) * per, (own.max - parts.origin) * per + per - 1};
+}
+
+std::uint64_t PackedDeltas::visible() const {
+    return sumOf(slabs, &Slab::visible);
+}
+
+std::uint64_t PackedDeltas::deltas() const {
+    return sumOf(slabs, &Slab::deltas);
+}
+
+bool PackedDeltas::areWhole() const {
+    return std::all_of(slabs.begin(), slabs.end(),
+                       [](const PlannedSlab& slab) { return slab.whole; });
+}
+
+std::span<const DeltaWord> PackedDeltas::slice(int index) const {
+    const auto i = std::size_t(index - box.min.x);
+    return std::span(words).subspan(begins[i], begins[i + 1] - begins[i]);
+}
+
+struct DeltaPacker::Impl {
+    Impl(const Volume& ofVolume, const PackOptions& withOptions)
+        : volume(ofVolume),
+          options(withOptions),
+          classOfSlot(withOptions.classOfSlot.begin(), withOptions.classOfSlot.end()) {
+        const ValueMixer* mixer = options.mixer;
+        if (mixer) divided = mixer->parts();
+        if (options.joiner) {
+            joiner = *options.joiner;
+            options.joiner = &*joiner;
+            divided.joined = int(options.slants.size());
+            divided.joinedWithin = options.joinedWithin;
+            std::copy(options.slants.begin(), options.slants.end(), divided.slants.begin());
+            options.slants = divided.joinedSlants();  // whoever gave them may be gone
+        }
+        box = boxOfSlices(volume.box, options.sliceAxis, divided);
+        if (volume.empty()) return;
+        options.classOfSlot = classOfSlot;
+        if (options.holds) holder.emplace(mixer ? mixer->levels() : volume, options);
+        slotMap = holder ? holder->numberOfSlot() : options.classOfSlot;
+        if (mixer) mixMap.emplace(slotMap, opacitiesOfMapped());
+        options.opacities = {};
+        if (mixer) sight.emplace(*mixer, slotMap, choosesClasses(options));
+        const SeenCone* const seen = options.seen ? &*options.seen : nullptr;
+        // What is mixed is listed with what lies beside it.
+        blocks = sight ? sight->listBlocks(*volume.codes, options.sliceAxis, volume.histogram)
+                       : listBlocks(*volume.codes, options.sliceAxis, slotMap, seen);
+        if (options.painter && options.painter->more())
+            addBlocks(*options.painter->more(), volume.box, options.sliceAxis, blocks);
+        if (seen && (sight || options.painter)) {
+            std::erase_if(blocks,
+                          [&](const CodeBlock& block) { return !seen->sees(block.position); });
+        }
+        if (joiner) {
+            joined.emplace(blocks, options.slants, options.joinedWithin);
+        } else {
+            runs = cutAtColumns(blocks, divided.within > 1);
+        }
+        if (!holder && !mixer) findRamps();
+    }
+
+    void findRamps() {
+        Code lowest = std::numeric_limits<Code>::max();
+        Code highest = 0;
+        for (const CodeBlock& block : blocks) {
+            if (!block.leaf && !block.slots) continue;
+            lowest = std::min(lowest, block.lowest);
+            highest = std::max(highest, block.highest);
+        }
+        if (lowest <= highest) ramps.emplace(slotMap, lowest, highest);
+    }
+
+    // Returns the opacities of what the slot map makes of slots; none if they are not known.
+    std::vector<float> opacitiesOfMapped() const {
+        if (options.opacities.empty()) return {};
+        const Slot last = *std::max_element(slotMap.begin(), slotMap.end());
+        std::vector<float> opacities(std::size_t(last) + 1);
+        for (std::size_t slot = 0; slot < slotMap.size(); ++slot)
+            opacities[std::size_t(slotMap[slot])] =
+                options.opacities[std::size_t(classOfSlot[slot])];
+        return opacities;
+    }
+
+    PackedDeltas noWords() const {
+        PackedDeltas packed;
+        packed.sliceAxis = options.sliceAxis;
+        packed.descending = options.descending;
+        packed.box = box;
+        return packed;
+    }
+
+    // All that there is, and slabs as short as they may be.
+    PackRange wholeRange(const SlabPlanner& planner) const {
+        const SlabLayout& layout = planner.shortest();
+        return {layout, layout.firstBlock, layout.lastBlock};
+    }
+
+    std::vector<ColumnPacker> run(const PackRange& range) const {
+        const PackTools tools{ramps ? &*ramps : nullptr,
+                              holder ? &*holder : nullptr,
+                              options.mixer,
+                              sight ? &*sight : nullptr,
+                              volume.codes.get(),
+                              volume.uncut ? volume.uncut.get() : volume.codes.get(),
+                              mixMap ? &*mixMap : nullptr};
+        std::vector<ColumnPacker> packers;
+        const std::size_t count = joined ? joined->runs().size() : runs.size();
+        packers.reserve(count);
+        for (std::size_t i = 0; i < count; ++i)
+            packers.emplace_back(box, options, tools, slotMap, range);
+        WordRooms rooms;
+        const auto pack = [&](std::size_t i) {
+            std::vector<PackedColumns> room = rooms.take();
+            joined ? packers[i].runJoined(*joined, i, room) : packers[i].run(runs[i], room);
+            rooms.give(std::move(room));
+        };
+        const bool areLooks = joiner && joiner->looks();
+        if (!range.budget && !areLooks) {
+            parallelFor(count, pack);
+            return packers;
+        }
+        // Some from all over the volume show how many words, and looks, there will be. The others
+        // in order: neighbours read some of the same leaves.
+        constexpr std::size_t kStep = 16;
+        const std::size_t sample = (count + kStep - 1) / kStep;
+        if (areLooks && sample < count) joiner->looks()->beginSample();
+        // Every other one, and then those between them.
+        parallelFor((sample + 1) / 2, [&](std::size_t i) { pack(kStep * 2 * i); });
+        const std::size_t ofHalf = areLooks ? joiner->looks()->count() : 0;
+        parallelFor(sample / 2, [&](std::size_t i) { pack(kStep * (2 * i + 1)); });
+        if (range.budget) range.budget->foresee(double(sample) / double(count));
+        if (areLooks) {
+            joiner->looks()->endSample(ofHalf);
+            if (hasTooManyLooks()) return packers;
+        }
+        parallelFor(count, [&](std::size_t i) {
+            if (i % kStep != 0) pack(i);
+        });
+        return packers;
+    }
+
+    bool hasTooManyLooks() const { return joiner && joiner->hasTooManyLooks(); }
+
+    // Whether looks were too many, and slices are to be joined again, with looks rounded further.
+    bool mustJoinAgain() {
+        if (!hasTooManyLooks()) return false;
+        if (joiner->looks()->run().bits == LookRun::kLeastBits)
+            throw std::logic_error("looks of few levels without numbers");
+        joiner->looks() = joiner->looks()->coarser();
+        return true;
+    }
+
+    // Plans slabs by what packers counted, and puts their words in order.
+    void collect(std::vector<ColumnPacker>& packers, SlabPlanner& planner,
+                 PackedDeltas& packed) const {
+        for (const ColumnPacker& packer : packers) planner.add(packer.planner());
+        SlabPlan plan = planner.plan(options.encoding, options.slabLength);
+        packed.slabs = std::move(plan.slabs);
+        collectWords(columnsOf(packers), plan.layout, options.painter != nullptr, packed);
+    }
+
+    std::vector<PackedColumns*> columnsOf(std::vector<ColumnPacker>& packers) const {
+        // Where packers have one row of columns each, they are in order.
+        return inOrder(packers, [&](std::size_t i) {
+            if (joined) return joined->runs()[i].front().x;
+            return divided.within > 1 ? runs[i].begin->position.y : int(i);
+        });
+    }
+
+    // The most blocks that there are words of.
+    double mostBlocks() const {
+        return joined ? double(joined->mostBlocks()) : double(blocks.size()) * divided.voxels();
+    }
+
+    // The most bytes that words can take.
+    double mostBytes() const { return mostBlocks() * kMostWordsOfBlock * kBytesPerWord; }
+
+    // Returns how many words may be stored before they are counted, to take so many bytes: none
+    // where these are less than an eighth of the most that words can take, as there are seldom
+    // fewer of them.
+    double wordsToTry(double bytes) const {
+        if (mostBytes() > 8 * bytes) return 0;
+        return std::min(bytes, double(availableMemory()) / 2) / kBytesPerWord;
+    }
+
+    void requireBlocks() const {
+        const double wordBytes = kBytesPerWord + (options.painter ? kLookBytesPerWord : 0);
+        requireMemory(divided.divides() ? "delta grid of divided voxels (`between` 0: undivided)"
+                                        : "delta grid",
+                      mostBlocks() * kMostWordsOfBlock * wordBytes + 16.0 * box.dims().x);
+    }
+
+    // The most words of a slab that are in memory while it is packed (ColumnPacker::isNeeded).
+    double storedWords(const PlannedSlab& slab) const {
+        const bool storesAll = options.descending && !slab.whole;
+        return double(storesAll ? slab.words + slab.seenWords : slab.stampedWords());
+    }
+
+    const Volume& volume;
+    PackOptions options;
+    std::vector<Slot> classOfSlot;
+    std::optional<SliceJoiner> joiner;
+    Subdivision divided;
+    IndexBox box;
+    std::optional<SlotHolder> holder;
+    std::span<const Slot> slotMap;
+    std::optional<ClassRamps> ramps;
+    std::optional<MixMap> mixMap;
+    std::optional<MixedSight> sight;
+    std::vector<CodeBlock> blocks;
+    std::vector<Columns> runs;
+    std::optional<JoinedTiles> joined;  // in their place, where slices are
+    SlabPlan planned;
+    std::vector<SlabRange> parts;
+};
+
+DeltaPacker::DeltaPacker(const Volume& volume, const PackOptions& options)
+    : impl_(std::make_unique<Impl>(volume, options)) {}
+DeltaPacker::~DeltaPacker() = default;
+DeltaPacker::DeltaPacker(DeltaPacker&&) noexcept = default;
+
+bool DeltaPacker::canBeParted() const {
+    return !impl_->options.mixer && !impl_->options.painter && !impl_->holder;
+}
+
+double DeltaPacker::mostBytes() const {
+    return impl_->mostBytes();
+}
+
+PackedDeltas DeltaPacker::packAll() {
+    PackedDeltas packed = impl_->noWords();
+    if (impl_->volume.empty()) return packed;
+    impl_->requireBlocks();
+    SlabPlanner planner(packed.box);
+    std::vector<ColumnPacker> packers;
+    do {
+        packers = impl_->run(impl_->wholeRange(planner));
+    } while (impl_->mustJoinAgain());
+    impl_->collect(packers, planner, packed);
+    return packed;
+}
+
+PackedDeltas DeltaPacker::packOrPlan(double mostBytes) {
+    PackedDeltas packed = impl_->noWords();
+    if (impl_->volume.empty()) return packed;
+    SlabPlanner planner(packed.box);
+    PackRange range = impl_->wholeRange(planner);
+    std::optional<WordBudget> budget;
+    std::vector<ColumnPacker> packers;
+    do {
+        budget.emplace(impl_->wordsToTry(mostBytes));
+        range.storesWords = !budget->isSpent();
+        range.budget = range.storesWords ? &*budget : nullptr;
+        packers = impl_->run(range);
+    } while (impl_->mustJoinAgain());
+    if (!budget->isSpent()) {
+        impl_->collect(packers, planner, packed);
+        return packed;
+    }
+    for (const ColumnPacker& packer : packers) planner.add(packer.planner());
+    impl_->planned = planner.plan(impl_->options.encoding, impl_->options.slabLength);
+    packed.slabs = impl_->planned.slabs;
+    packed.begins.assign(std::size_t(packed.box.dims().x) + 1, 0);
+    double bytes = 0;
+    for (int i = 0; i < int(packed.slabs.size()); ++i) {
+        const double ofSlab = impl_->storedWords(packed.slabs[std::size_t(i)]) * kBytesPerWord;
+        if (impl_->parts.empty() || bytes + ofSlab > mostBytes) {
+            impl_->parts.push_back({i, i});
+            bytes = 0;
+        }
+        impl_->parts.back().last = i + 1;
+        bytes += ofSlab;
+    }
+    return packed;
+}
+
+const std::optional<SliceJoiner>& DeltaPacker::joiner() const {
+    return impl_->joiner;
+}
+
+const std::vector<SlabRange>& DeltaPacker::parts() const {
+    return impl_->parts;
+}
+
+PackedDeltas DeltaPacker::pack(const SlabRange& part) const {
+    PackedDeltas packed = impl_->noWords();
+    packed.slabs = impl_->planned.slabs;
+    const SlabLayout& layout = impl_->planned.layout;
+    const int firstBlock = layout.firstBlock + part.first * layout.blocksPerSlab;
+    const int lastBlock =
+        std::min(layout.firstBlock + part.last * layout.blocksPerSlab - 1, layout.lastBlock);
+    double words = 0;
+    for (int i = part.first; i < part.last; ++i)
+        words += impl_->storedWords(packed.slabs[std::size_t(i)]);
+    requireMemory("part of a delta grid", words * kBytesPerWord);
+    std::vector<ColumnPacker> packers =
+        impl_->run({layout, firstBlock, lastBlock, true, impl_->planned.slabs});
+    if (impl_->hasTooManyLooks()) throw std::logic_error("a part has looks that the whole has not");
+    collectWords(impl_->columnsOf(packers), layout, false, packed);
+    return packed;
+}
+
+PackedDeltas packDeltas(const Volume& volume, const PackOptions& options) {
+    return DeltaPacker(volume, options).packAll();
+}
+
+}  // namespace deltasplat

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "words/slab_plan.h"
+
+#include <algorithm>
+
+#include "volume/block_kernels.h"
+
+namespace deltasplat {
+namespace {
+
+// How many slabs there are: each costs a layer, and the fewer there are, the farther a strip's rows
+// move along a sheet (src/composite/slab_renderer.cpp).
+constexpr int kMostSlabs = 8;
+constexpr int kLeastSlabs = 4;
+constexpr int kShortSlab = 4;  // blocks of 8 slices: slabs up to this length may be fewer
+// The most deltas that key slices may add, as a share of all others, as long as there may be fewer.
+constexpr double kMostKeyDeltas = 0.03;
+
+// Slabs take as long as they have words to splat, however many voxels of these change, and whole
+// ones a tenth less: nobody has to keep account of what waits.
+bool hasFewerWordsWhole(const PlannedSlab& slab) {
+    return 9 * slab.seenWords < 10 * slab.words;
+}
+
+// Where few voxels of a word change, they may be stamped, which is faster than to sum all of them.
+// From how many on depends on the footprint (TileSplatter::leastStamps), which is not known here:
+// the least is right for the smallest ones.
+bool changesFew(const PlannedSlab& slab) {
+    return slab.deltas < 12 * slab.words;
+}
+
+// @param writes  MaskCounts::writes of all that is visible, and of changes
+bool isWhole(const PlannedSlab& slab, const SliceCounts& writes, Encoding encoding) {
+    switch (encoding) {
+        case Encoding::kChanges:
+            return false;
+        case Encoding::kWhole:
+            return true;
+        case Encoding::kFewerWords:
+            return hasFewerWordsWhole(slab);
+        case Encoding::kFewerWordsOrVoxels:
+            return hasFewerWordsWhole(slab) && 6 * slab.visible < 7 * slab.deltas;
+        case Encoding::kFewerWordsOrWrites:
+            return hasFewerWordsWhole(slab) && 3 * writes.visible < 4 * writes.deltas;
+        case Encoding::kFewerWordsOrStamps:
+            return changesFew(slab) ? 8 * slab.visible < 5 * slab.deltas : hasFewerWordsWhole(slab);
+    }
+    return false;
+}
+
+}  // namespace
+
+SlabPlanner::SlabPlanner(const IndexBox& box) : box_(box), shortest_(layoutOf(box, 8)) {
+    shortest_.blocksPerSlab = (shortest_.blocks() - 1) / kMostSlabs + 1;
+    counts_.resize(shortest_.count());
+}
+
+void SlabPlanner::add(int slice, std::span<const std::uint64_t> visible,
+                      std::span<const std::uint64_t> changed) {
+    const auto count = [&](std::size_t slices) {
+        const MaskCounts seen = countMasks(visible.first(slices));
+        const MaskCounts differing = countMasks(changed.first(slices));
+        return Counts{{seen.voxels, differing.voxels},
+                      {seen.words, differing.words},
+                      {seen.writes, differing.writes}};
+    };
+    SlabCounts& counts = counts_[shortest_.slabOf(slice >> 3)];
+    counts.all += count(visible.size());
+    if (shortest_.startsLaterSlab(slice)) counts.firstSlice += count(1);
+}
+
+void SlabPlanner::add(const SlabPlanner& other) {
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+        counts_[i].all += other.counts_[i].all;
+        counts_[i].firstSlice += other.counts_[i].firstSlice;
+    }
+}
+
+SlabPlan SlabPlanner::plan(Encoding encoding, SlabLength slabLength) const {
+    const int length = slabLength == SlabLength::kShortest ? 1 : chooseLength();
+    SlabPlan plan{shortest_, {}};
+    plan.layout.blocksPerSlab *= length;
+    std::vector<Counts> counts;  // [slab]
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+        const bool begins = i % length == 0;
+        if (begins) counts.emplace_back();
+        counts.back() += counts_[i].all;
+        if (begins) counts.back().addKeySlice(counts_[i].firstSlice);
+    }
+    plan.slabs.resize(counts.size());
+    for (int i = 0; i < plan.layout.count(); ++i) {
+        PlannedSlab& slab = plan.slabs[std::size_t(i)];
+        const auto& [voxels, words, writes] = counts[std::size_t(i)];
+        placeSlab(box_, plan.layout, i, slab);
+        slab.visible = voxels.visible;
+        slab.deltas = voxels.deltas;
+        slab.seenWords = words.visible;
+        slab.words = words.deltas;
+        slab.whole = isWhole(slab, writes, encoding);
+    }
+    return plan;
+}
+
+// Returns how many of the shortest slabs make one.
+int SlabPlanner::chooseLength() const {
+    const int longest = std::max(kShortSlab, (shortest_.blocks() - 1) / kLeastSlabs + 1);
+    int length = 1;
+    while (2 * length * shortest_.blocksPerSlab <= longest &&
+           keyShare(std::size_t(length)) > kMostKeyDeltas) {
+        length *= 2;
+    }
+    return length;
+}
+
+// Returns the share of deltas that key slices add if `length` of the shortest slabs make one.
+double SlabPlanner::keyShare(std::size_t length) const {
+    double deltas = 0;
+    double added = 0;
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+        deltas += double(counts_[i].all.voxels.deltas);
+        const SliceCounts& key = counts_[i].firstSlice.voxels;
+        if (i % length == 0) added += double(key.visible) - double(key.deltas);
+    }
+    return deltas > 0 ? added / deltas : 0;
+}
+
+}  // namespace deltasplat

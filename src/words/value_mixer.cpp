@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "words/value_mixer.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <glm/vector_relational.hpp>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "words/mix_window.h"
+
+namespace deltasplat {
+namespace {
+
+bool isEven(const CodeBook& book) {
+    return book.kind == CodeBook::Kind::kInteger || book.kind == CodeBook::Kind::kLinear;
+}
+
+// Buckets on either side of the one that 0 lies in.
+constexpr std::uint64_t kBuckets = 1 << 15;
+
+}  // namespace
+
+ValueMixer::ValueMixer(const Volume& volume, const Subdivision& parts, bool keepsLone)
+    : parts_(parts), keepsLone_(keepsLone), levels_(volume), ownLevel_(kCodeCount) {
+    levels_.codes = nullptr;
+    levels_.uncut = nullptr;
+    levels_.source = nullptr;
+    levels_.histogram.assign(kCodeCount, 0);
+    const auto occurs = [](std::uint64_t count) { return count != 0; };
+    const auto& histogram = volume.histogram;
+    const auto lowest = std::find_if(histogram.begin(), histogram.end(), occurs);
+    if (lowest == histogram.end()) return;
+    const auto highest = std::find_if(histogram.rbegin(), histogram.rend(), occurs).base() - 1;
+    if (isEven(volume.codeBook)) {
+        makeEvenLevels(volume, int(lowest - histogram.begin()), int(highest - histogram.begin()));
+    } else {
+        makeTableLevels(volume);
+    }
+    for (int code = 0; code < kCodeCount; ++code) {
+        if (histogram[code] == 0) continue;
+        const int steps = (code - even_.lowest) * even_.perCode;
+        ownLevel_[code] = Code(even_.perCode != 0 ? steps : levelOfValue(table_.ofCode[code]));
+    }
+}
+
+void ValueMixer::makeEvenLevels(const Volume& volume, int lowest, int highest) {
+    const int span = highest - lowest;
+    // Values mixed by halves and quarters fall on levels, if there are enough of them.
+    const int wanted = parts_.smallestShare();
+    // A power of two, so that a code's own value comes out exactly.
+    const int room = span == 0 ? 1 : (kCodeCount - 1) / span;
+    const int perCode = int(std::bit_floor(unsigned(std::min(wanted, room))));
+    even_ = {Code(lowest), perCode, span * perCode};
+    std::fill_n(levels_.histogram.begin(), even_.last + 1, 1);
+    CodeBook& book = levels_.codeBook;
+    const double step = book.kind == CodeBook::Kind::kLinear ? book.step : 1;
+    book.kind = CodeBook::Kind::kLinear;
+    book.offset = volume.codeBook.valueOf(Code(lowest));
+    book.step = step / even_.perCode;
+}
+
+void ValueMixer::makeTableLevels(const Volume& volume) {
+    table_.ofCode.resize(kCodeCount);
+    std::vector<double> values;
+    for (int code = 0; code < kCodeCount; ++code) {
+        if (volume.histogram[code] == 0) continue;
+        table_.ofCode[code] = volume.codeBook.valueOf(Code(code));
+        values.push_back(table_.ofCode[code]);
+    }
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+
+    const std::vector<int> between = levelsBetween(values);
+    std::vector<double> all;
+    for (std::size_t i = 0; i + 1 < values.size(); ++i) {
+        const double half = values[i + 1] / 2 - values[i] / 2;
+        table_.rungs.push_back({values[i], half, int(all.size()), between[i]});
+        all.push_back(values[i]);
+        for (int n = 1; n < between[i]; ++n) {
+            const double share = double(n) / between[i];
+            all.push_back((1 - share) * values[i] + share * values[i + 1]);
+        }
+    }
+    table_.rungs.push_back({values.back(), 0, int(all.size()), 0});
+    all.push_back(values.back());
+    makeBuckets();
+    std::fill_n(levels_.histogram.begin(), all.size(), 1);
+    levels_.codeBook = CodeBook::ofTable(std::move(all));
+}
+
+// Returns how many steps there are from each value to the next: those that mixing by quarters needs
+// or, where values lie far apart, 2^-14 of the larger one each; fewer if there is no room.
+std::vector<int> ValueMixer::levelsBetween(const std::vector<double>& values) const {
+    constexpr double kStepsPerValue = 16384;
+    std::vector<int> steps;
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < values.size(); ++i) {
+        const double size = std::max(std::abs(values[i]), std::abs(values[i + 1])) / 2;
+        const double apart = size > 0 ? (values[i + 1] / 2 - values[i] / 2) / size : 1;
+        const double wanted = std::ceil(std::min(apart, 1.0) * kStepsPerValue);
+        steps.push_back(std::max(int(wanted), parts_.smallestShare()));
+        sum += steps.back();
+    }
+    // One each is there in any case.
+    const double room = double(kCodeCount) - 1 - double(steps.size());
+    if (sum <= room) return steps;
+    for (int& count : steps) count = 1 + int(count * (room / sum));
+    return steps;
+}
+
+// As fine as the range of magnitudes allows.
+void ValueMixer::makeBuckets() {
+    std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+    std::uint64_t most = 0;
+    for (const TableLevels::Rung& rung : table_.rungs) {
+        if (rung.value == 0) continue;
+        const auto bits = std::bit_cast<std::uint64_t>(std::abs(rung.value));
+        least = std::min(least, bits);
+        most = std::max(most, bits);
+    }
+    table_.least = std::min(least, most);
+    while ((most - table_.least) >> table_.dropped >= kBuckets) ++table_.dropped;
+    std::size_t next = 0;
+    for (std::size_t bucket = 0; bucket <= 2 * kBuckets + 1; ++bucket) {
+        while (next < table_.rungs.size() && table_.bucketOf(table_.rungs[next].value) < bucket)
+            ++next;
+        table_.starts.push_back(int(next));
+    }
+}
+
+// In the order of values: negative ones come before 0 and what is nearer to it than any other.
+std::size_t ValueMixer::TableLevels::bucketOf(double value) const {
+    const auto bits = std::bit_cast<std::uint64_t>(std::abs(value));
+    const std::uint64_t place = bits < least ? 0 : 1 + ((bits - least) >> dropped);
+    return value < 0 ? kBuckets - place : kBuckets + place;
+}
+
+int ValueMixer::levelOfValue(double value) const {
+    const std::vector<TableLevels::Rung>& rungs = table_.rungs;
+    if (!(value > rungs.front().value)) return rungs.front().level;
+    if (!(value < rungs.back().value)) return rungs.back().level;
+    const std::size_t bucket = table_.bucketOf(value);
+    const auto behind = std::upper_bound(
+        rungs.begin() + table_.starts[bucket], rungs.begin() + table_.starts[bucket + 1], value,
+        [](double number, const TableLevels::Rung& rung) { return number < rung.value; });
+    const TableLevels::Rung& rung = behind[-1];
+    // Half a number may be none where numbers are smallest.
+    const double share = rung.half > 0 ? (value / 2 - rung.value / 2) / rung.half : 0;
+    return rung.level + int(share * rung.steps + 0.5);
+}
+
+MixMap::MixMap(std::span<const Slot> slotMap, std::span<const float> opacitiesOfMapped)
+    : slots(slotMap),
+      opacities(slotMap.size()),
+      ofMapped(opacitiesOfMapped.begin(), opacitiesOfMapped.end()) {
+    areAlike = ofMapped.empty();
+    if (areAlike) {
+        ofMapped.assign(std::size_t(*std::max_element(slots.begin(), slots.end())) + 1, 1.0f);
+    }
+    ofMapped[kEmptySlot] = 0;
+    for (std::size_t slot = 0; slot < slots.size(); ++slot)
+        opacities[slot] = ofMapped[std::size_t(slots[slot])];
+    rising =
+        std::size_t(std::is_sorted_until(opacities.begin(), opacities.end()) - opacities.begin());
+}
+
+namespace {
+
+// The values of a window's slots, NaN where there are none.
+std::array<double, MixWindow::kSide * MixWindow::kPlane> valuesOf(
+    const MixWindow& window, const std::vector<double>& valueOfCode) {
+    std::array<double, MixWindow::kSide * MixWindow::kPlane> values;
+    for (std::size_t n = 0; n < values.size(); ++n) {
+        const Slot slot = window.slots[n];
+        values[n] = slot == kEmptySlot ? std::numeric_limits<double>::quiet_NaN()
+                                       : valueOfCode[std::size_t(slot - 1)];
+    }
+    return values;
+}
+
+constexpr VoxelMasks everyVoxel() {
+    VoxelMasks masks{};
+    masks.fill(~std::uint64_t{0});
+    return masks;
+}
+
+}  // namespace
+
+void ValueMixer::mix(const MixWindow& window, const MixMap& map,
+                     std::span<BlockSlots> mixed) const {
+    if (window.slots[0] != kEmptySlot && window.isUniform()) {
+        const Slot slot = map.slots[std::size_t(levelOf(Code(window.slots[0] - 1))) + 1];
+        for (BlockSlots& block : mixed) block.fill(slot);
+        return;
+    }
+    if (even_.perCode != 0) {
+        const bool rise = map.rising > std::size_t(even_.last) + 1;
+        const VoxelMasks lost = mixEvenLevels(window, parts_, even_, map.slots.data(),
+                                              map.opacities.data(), rise, mixed.data());
+        return keepSeen(window, map, lost, mixed);
+    }
+    mixRows(valuesOf(window, table_.ofCode), parts_, [&](int part, int place, const double* row) {
+        Slot* out = &mixed[std::size_t(part)][std::size_t(place)];
+        for (int v = 0; v < 8; ++v) {
+            const bool isThere = row[v] == row[v];
+            out[v] = isThere ? map.slots[std::size_t(levelOfValue(row[v])) + 1] : kEmptySlot;
+        }
+    });
+    keepSeen(window, map, everyVoxel(), mixed);
+}
+
+namespace {
+
+// Returns of the voxels of a block the least opacity among those that each is mixed with, and its
+// own: what is not active is mixed with nothing.
+template <typename OpacityOf>
+std::array<float, 512> leastAround(const MixWindow& window, bool alongSlicesOnly,
+                                   const OpacityOf& opacityOf) {
+    constexpr int kSide = MixWindow::kSide;
+    std::array<float, MixWindow::kSide * MixWindow::kPlane> least;
+    for (std::size_t n = 0; n < least.size(); ++n)
+        least[n] = window.slots[n] == kEmptySlot ? 1.0f : opacityOf(window.slots[n]);
+    // Along one axis after the other, of each three that follow each other at the place of the
+    // first.
+    const auto takeLeast = [&](int step) {
+        for (std::size_t n = 0; n + 2 * std::size_t(step) < least.size(); ++n) {
+            const float next = std::min(least[n + step], least[n + 2 * step]);
+            least[n] = std::min(least[n], next);
+        }
+    };
+    takeLeast(MixWindow::kPlane);
+    if (!alongSlicesOnly) {
+        takeLeast(kSide);
+        takeLeast(1);
+    }
+    const auto first = std::size_t(alongSlicesOnly ? kSide + 1 : 0);
+    std::array<float, 512> inner;
+    for (int n = 0; n < 512; ++n) {
+        const int place = n / 64 * MixWindow::kPlane + n / 8 % 8 * kSide + n % 8;
+        inner[std::size_t(n)] = least[first + std::size_t(place)];
+    }
+    return inner;
+}
+
+}  // namespace
+
+// Lets voxels be seen of whose opacity, above what is around them, nothing is left in what they
+// become.
+// @param places  of voxels that this may be true of
+void ValueMixer::keepSeen(const MixWindow& window, const MixMap& map, const VoxelMasks& places,
+                          std::span<BlockSlots> mixed) const {
+    constexpr float kLeast = 1.0f / 32;
+    const auto levelSlotOf = [&](Slot own) { return std::size_t(levelOf(Code(own - 1))) + 1; };
+    std::optional<std::array<float, 512>> around;  // for the few that need it
+    for (std::size_t s = 0; s < places.size(); ++s) {
+        for (std::uint64_t left = places[s]; left != 0; left &= left - 1) {
+            const int n = std::countr_zero(left);
+            const glm::ivec3 place(s, n / 8, n % 8);
+            const Slot own = window.at(place);
+            if (own == kEmptySlot) continue;
+            const Slot seen = map.slots[levelSlotOf(own)];
+            if (seen == kEmptySlot) continue;
+            const float opacity = map.opacities[levelSlotOf(own)];
+            float most = 0;
+            forPartsOf(place, [&](std::size_t part, std::size_t slot) {
+                most = std::max(most, map.ofMapped[std::size_t(mixed[part][slot])]);
+            });
+            if (most >= 0.5f * opacity) continue;
+            if (!around)
+                around = leastAround(window, parts_.within == 1,
+                                     [&](Slot slot) { return map.opacities[levelSlotOf(slot)]; });
+            const float least = (*around)[64 * s + std::size_t(n)];
+            const bool isShown = most > 0 && most - least >= kLeast * (opacity - least);
+            if (isShown) continue;
+            if (!keepsLone_ && !map.areAlike) {
+                showShares(window, map, place, mixed);
+                continue;
+            }
+            forPartsOf(place,
+                       [&](std::size_t part, std::size_t slot) { mixed[part][slot] = seen; });
+        }
+    }
+}
+
+// What values are mixed as: levels, if they are even, else values; NaN for what is not active.
+double ValueMixer::numberOf(Slot slot) const {
+    if (slot == kEmptySlot) return std::numeric_limits<double>::quiet_NaN();
+    if (even_.perCode == 0) return table_.ofCode[std::size_t(slot - 1)];
+    return double(slot - 1 - even_.lowest) * even_.perCode;
+}
+
+int ValueMixer::levelOfNumber(double number) const {
+    return even_.perCode == 0 ? levelOfValue(number) : int(number + 0.5);
+}
+
+// Mixes what is there at a place that lies half a voxel from a voxel's middle at most.
+double ValueMixer::numberAt(const MixWindow& window, const glm::ivec3& place,
+                            const glm::dvec3& off) const {
+    const glm::ivec3 step(off.x < 0 ? -1 : 1, off.y < 0 ? -1 : 1, off.z < 0 ? -1 : 1);
+    const auto mixed = [](double a, double b, double share) {
+        return std::isnan(b) ? a : a + std::abs(share) * (b - a);
+    };
+    const auto along = [&](int u, int v) {
+        const glm::ivec3 first = place + glm::ivec3(0, u * step.y, v * step.z);
+        return mixed(numberOf(window.at(first)),
+                     numberOf(window.at(first + glm::ivec3(step.x, 0, 0))), off.x);
+    };
+    return mixed(mixed(along(0, 0), along(1, 0), off.y), mixed(along(0, 1), along(1, 1), off.y),
+                 off.z);
+}
+
+// Returns what becomes of the level, of those on the way from one to another, that is closest to
+// being so opaque: of some of them, then of some around that.
+Slot ValueMixer::slotAsOpaque(const MixMap& map, int from, int to, double opacity) const {
+    constexpr int kSteps = 64;
+    Slot closest = kEmptySlot;
+    double least = opacity;  // what nothing is off by
+    const auto look = [&](int first, int last) {
+        int best = first;
+        double leastHere = std::numeric_limits<double>::infinity();
+        for (int n = 0; n <= kSteps; ++n) {
+            const int level = first + (last - first) * n / kSteps;
+            const auto slot = std::size_t(level) + 1;
+            const double off = std::abs(double(map.opacities[slot]) - opacity);
+            if (off < leastHere) {
+                leastHere = off;
+                best = level;
+            }
+            if (map.slots[slot] == kEmptySlot || off >= least) continue;
+            least = off;
+            closest = map.slots[slot];
+        }
+        return best;
+    };
+    const int around = look(from, to);
+    const auto [low, high] = std::minmax(from, to);
+    const int step = (high - low) / kSteps;
+    if (step > 0) look(std::max(around - step, low), std::min(around + step, high));
+    return closest;
+}
+
+// Makes what a voxel becomes as opaque as it is on average: what is seen of it lies between the
+// middles.
+void ValueMixer::showShares(const MixWindow& window, const MixMap& map, const glm::ivec3& place,
+                            std::span<BlockSlots> mixed) const {
+    const glm::ivec3 per(parts_.slices, parts_.within, parts_.within);
+    const int own = levelOf(Code(window.at(place) - 1));
+    int n = 0;
+    forPartsOf(place, [&](std::size_t part, std::size_t slot) {
+        const glm::ivec3 at(n / (per.y * per.z), n / per.z % per.y, n % per.z);
+        ++n;
+        // Along an axis along which nothing is divided nothing is mixed.
+        const auto levelAt = [&](const glm::dvec3& share) {
+            const glm::dvec3 off = (glm::dvec3(at) + share) / glm::dvec3(per) - 0.5;
+            const glm::dvec3 divided(glm::greaterThan(per, glm::ivec3(1)));
+            return levelOfNumber(numberAt(window, place, off * divided));
+        };
+        double sum = 0;
+        for (int k = 0; k < 27; ++k) {
+            const glm::dvec3 third(k / 9, k / 3 % 3, k % 3);
+            sum += double(map.opacities[std::size_t(levelAt((third + 0.5) / 3.0)) + 1]);
+        }
+        mixed[part][slot] = slotAsOpaque(map, levelAt(glm::dvec3(0.5)), own, sum / 27);
+    });
+}
+
+}  // namespace deltasplat
