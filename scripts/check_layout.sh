@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Checks what needs no build: the layout of C++, and shell and Python scripts for errors.
+# Checks what needs no build: the layout of C++, shell and Python scripts for errors, and that the
+# drawing of rooms is that of the includes.
 # Usage: bash scripts/check_layout.sh
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -14,3 +15,4 @@ git ls-files -z '*.py' | xargs -0 python3 -c '
 import sys
 for name in sys.argv[1:]:
     compile(open(name, encoding="utf-8").read(), name, "exec")'
+python3 scripts/draw_rooms.py --check
