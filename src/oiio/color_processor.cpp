@@ -23,6 +23,8 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
+#include "deltasplat/image/color_management.h"
+#include "deltasplat/image/image.h"
 #include "deltasplat/threads.h"
 #include "image/srgb.h"
 #include "modules/image_module.h"

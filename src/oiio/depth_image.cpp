@@ -5,6 +5,8 @@
 #include "base/default_floats.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "deltasplat/hold_out.h"
+#include "deltasplat/progress.h"
 #include "files/file_name.h"
 #include "modules/image_module.h"
 #include "oiio/image_file.h"

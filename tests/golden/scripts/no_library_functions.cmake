@@ -1,5 +1,5 @@
 # Fails where a source of the library calls a function of the C library, or of GLM, whose last bit
-# depends on the processor: src/portable_math.h has those that are needed.
+# depends on the processor: src/base/portable_math.h has those that are needed.
 # Usage: cmake -DSOURCES=FOLDER -P no_library_functions.cmake
 cmake_minimum_required(VERSION 3.25)
 file(GLOB_RECURSE files ${SOURCES}/*.cpp ${SOURCES}/*.h)
