@@ -7,7 +7,7 @@
 namespace deltasplat {
 
 /// Returns the names of the SIMD levels this machine can run, best first, for example
-/// `{"AVX3_DL", "AVX3", "AVX2", "SSE4", "SSSE3", "SSE2"}`.
+/// `{"AVX3_DL", "AVX3", "AVX2", "SSE4", "SSE2"}`.
 std::vector<std::string> simdLevels();
 
 /// Returns the name of the level in use.
