@@ -9,7 +9,7 @@ set(DELTASPLAT_ROOMS)
 #   SOURCES  its .cpp files; a room of headers has none
 function(deltasplat_room name)
     cmake_parse_arguments(PARSE_ARGV 1 room "" "" "USES;PUBLIC;LIBRARIES;SOURCES")
-    set(path ${CMAKE_CURRENT_BINARY_DIR}/rooms/${name})
+    set(path ${CMAKE_BINARY_DIR}/deltasplat_rooms/${name})
     file(MAKE_DIRECTORY ${path})
     file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/src/${name} ${path}/${name} SYMBOLIC)
     foreach(header ${room_PUBLIC})
