@@ -7,8 +7,9 @@ set(DELTASPLAT_ROOMS)
 #   PUBLIC   headers of include/deltasplat/ that belong to it
 #   LIBRARIES  of others, besides those that all rooms have
 #   SOURCES  its .cpp files; a room of headers has none
+#   LOOPS    it has loops over voxels or pixels outside of its kernels
 function(deltasplat_room name)
-    cmake_parse_arguments(PARSE_ARGV 1 room "" "" "USES;PUBLIC;LIBRARIES;SOURCES")
+    cmake_parse_arguments(PARSE_ARGV 1 room "LOOPS" "" "USES;PUBLIC;LIBRARIES;SOURCES")
     set(path ${CMAKE_BINARY_DIR}/deltasplat_rooms/${name})
     file(MAKE_DIRECTORY ${path})
     file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/src/${name} ${path}/${name} SYMBOLIC)
@@ -34,6 +35,9 @@ function(deltasplat_room name)
     target_link_libraries(${target} PUBLIC ${room_USES} glm::glm
         PRIVATE ${room_LIBRARIES} TBB::tbb hwy::hwy ZLIB::ZLIB nlohmann_json::nlohmann_json)
     deltasplat_compile_options(${target})
+    if(NOT room_LOOPS)
+        deltasplat_quick_to_compile(${target})
+    endif()
     list(APPEND DELTASPLAT_ROOMS ${target})
     set(DELTASPLAT_ROOMS ${DELTASPLAT_ROOMS} PARENT_SCOPE)
 endfunction()

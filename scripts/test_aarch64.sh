@@ -7,9 +7,7 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/debian_root.sh"
 
-tests=(portable_math_test default_floats_test golden_test footprint_test class_table_test
-    transfer_function_test camera_test factorization_test sheet_test splatter_test
-    tile_kernels_test layer_test ray_kernels_test warp_test)
+tests=(base_tests golden_tests optics_tests view_tests splat_tests)
 
 [[ $# -eq 0 || ($# -eq 2 && $1 == --seconds && $2 =~ ^[0-9]+$) ]] ||
     fail "got $*; expected nothing or --seconds N"

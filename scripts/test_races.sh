@@ -6,5 +6,5 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 cmake --preset tsan </dev/null
-cmake --build --preset tsan --target shared_scene_tests
-ctest --preset tsan --tests-regex '(Prepared|LayeredPicture|KeptMemory)\.' --no-tests=error </dev/null
+cmake --build --preset tsan --target base_tests picture_tests
+ctest --preset tsan --tests-regex '(Prepared|SlabPicture|KeptMemory)\.' --no-tests=error </dev/null

@@ -11,11 +11,8 @@ if [[ $# -gt 0 && ! ($# -eq 2 && $1 == --seconds && $2 =~ ^[0-9]+$) ]]; then
     echo "test_sanitizers.sh: got $*; expected nothing or --seconds N" >&2
     exit 2
 fi
-foreign_bytes=(read_vdb_error_test read_delta_error_test read_nifti_error_test read_nrrd_test
-    read_raw_error_test read_meta_test)
-
 cmake --preset asan </dev/null
-cmake --build --preset asan --target "${foreign_bytes[@]}" </dev/null
+cmake --build --preset asan --target foreign_bytes_tests </dev/null
 status=0
 timeout "$((SECONDS < ${2:-86400} ? ${2:-86400} - SECONDS : 1))" \
     cmake --build --preset asan --target sanitized_tests </dev/null || status=$?

@@ -81,8 +81,7 @@ std::string directionText(const VolumePlace& place, const std::string& space, in
 
 Json placeJson(const Volume& volume) {
     const VolumePlace place = placeOf(volume);
-    const Camera camera =
-        makeCamera(CameraOptions(), volume.box, volume.worldFromIndex, volume.space);
+    const Camera camera = makeCamera(CameraOptions(), volume);
     const glm::dmat3& d = place.directions;
     return {{"world_box", {vectorJson(place.box.min), vectorJson(place.box.max)}},
             {"origin", vectorJson(place.origin)},

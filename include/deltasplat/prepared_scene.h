@@ -32,6 +32,18 @@ class PreparedScene {
     /// @throw Error(kUsage) for optics out of range
     PreparedScene withOptics(Optics optics) const;
 
+    /// Renders emission and absorption as a camera sees them (Mode::kComposite). Same scene, same
+    /// camera: the same pixels as the function `render`, bit for bit, and on any number of threads.
+    /// Memory that a picture takes is kept for the next: at most what was in use at one time.
+    /// @throw Error(kUsage) for an option or a camera out of range; Error(kFailed) for a picture
+    ///        that does not fit this machine's memory; whatever `listener.progress` throws
+    Image render(const Camera& camera, const Listener& listener = {}) const;
+    /// Renders into a picture of the caller's.
+    /// @param image  of the camera's size; all of it is written, unless something is thrown
+    /// @return what was done; what was prepared before took no time
+    /// @throw Error(kUsage) if the image has another size; as above
+    RenderStats render(const Camera& camera, Image& image, const Listener& listener = {}) const;
+
     const Scene& scene() const;
     const SplatOptions& options() const;
 
@@ -41,34 +53,5 @@ class PreparedScene {
   private:
     std::shared_ptr<const Impl> impl_;
 };
-
-/// Renders pictures of prepared scenes and keeps the memory that they take, for the next: at most
-/// what was in use at one time, until the renderer is gone. Thread-safe.
-class Renderer {
-  public:
-    Renderer();
-    ~Renderer();
-    Renderer(Renderer&&) noexcept;
-    Renderer& operator=(Renderer&&) noexcept;
-
-    /// Renders emission and absorption as a camera sees them: what Mode::kComposite is, into a
-    /// picture of the caller's. Same scene, same camera: the same pixels as `render`, bit for bit,
-    /// and on any number of threads. Times in the stats are those of this call: what was prepared
-    /// before costs nothing.
-    /// @param image  of the camera's size; all of it is written, unless something is thrown
-    /// @throw Error(kUsage) if the image has another size or an option is out of range;
-    ///        Error(kFailed) for a picture that does not fit this machine's memory; whatever
-    ///        `listener.progress` throws
-    RenderStats render(const PreparedScene& scene, const Camera& camera, Image& image,
-                       const Listener& listener = {});
-
-  private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
-};
-
-/// Renders one picture of a prepared scene, as Renderer::render.
-RenderStats renderComposite(const PreparedScene& scene, const Camera& camera, Image& image,
-                            const Listener& listener = {});
 
 }  // namespace deltasplat

@@ -30,4 +30,10 @@ struct RenderResult {
 RenderResult render(const Volume& volume, const RenderOptions& options,
                     const Listener& listener = {});
 
+/// Renders the picture that the program makes of a volume if nothing is asked for: from the front,
+/// 512 pixels wide, by defaultOptics (optics/presets.h). A level set is then an opaque surface
+/// only if it was read with ReadOptions::levelSetSurface; otherwise it is fog.
+/// @throw as above
+RenderResult render(const Volume& volume, const Listener& listener = {});
+
 }  // namespace deltasplat

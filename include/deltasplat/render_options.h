@@ -74,10 +74,11 @@ struct Drr {
     std::optional<double> photons;  ///< that a pixel would get past nothing, > 0; empty: 1
 };
 
-/// What can be asked for. Under all modes but kComposite method, tolerance, resolution, filter,
-/// sigma, extinction, unit distance and colorBy have no effect; the transfer function has none but
+/// What can be asked for. Under all modes but kComposite `splat`, extinction, unit distance and
+/// colorBy have no effect; the transfer function has none but
 /// for the colours of `mipColors`.
-struct RenderOptions : SplatOptions {
+struct RenderOptions {
+    SplatOptions splat;
     Mode mode = Mode::kComposite;
     /// kMip, kMin, kAverage: the transfer function's colour of the value, opaque, instead of the
     /// value itself.

@@ -12,6 +12,19 @@
 
 namespace deltasplat {
 
+std::optional<double> anyBroken(const Volume& volume) {
+    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
+        if (volume.histogram[code] == 0) continue;
+        const double value = volume.codeBook.valueOf(Code(code));
+        if (value != std::floor(value)) return value;
+    }
+    return {};
+}
+
+bool holdsLabels(const Volume& volume) {
+    return volume.labels && !anyBroken(volume);
+}
+
 TransferFunction labelFunction(const std::vector<LabelLook>& looks) {
     TransferFunction function;
     function.categorical = true;

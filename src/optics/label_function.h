@@ -3,6 +3,7 @@
 
 #include <glm/vec3.hpp>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -18,6 +19,12 @@ struct LabelLook {
     glm::dvec3 rgb{0.0};  ///< sRGB, 0..1
     double opacity = 0;   ///< 0..1, over one unit distance
 };
+
+/// Returns a value of an active voxel that is no whole number, if there is one.
+std::optional<double> anyBroken(const Volume& volume);
+
+/// Whether a file says that its values are labels, and they can be.
+bool holdsLabels(const Volume& volume);
 
 /// Returns the transfer function of data values that are labels: each has its own look half way to
 /// its neighbours, all others are clear. It is categorical.

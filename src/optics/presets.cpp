@@ -12,6 +12,7 @@
 #include "base/default_floats.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/default_ramp.h"
+#include "deltasplat/optics/surface.h"
 #include "optics/color_maps.h"
 #include "optics/color_space.h"
 #include "optics/label_function.h"
@@ -201,6 +202,23 @@ void fitPreset(const Preset& preset, const Volume& volume, Optics& optics) {
     if (range.x == range.y)
         range.x = std::min(std::nextafter(range.y, -HUGE_VAL), range.y - kLeast);
     optics.range = range;
+}
+
+const Preset* defaultPreset(const Volume& volume) {
+    if (holdsLabels(volume)) return findPreset(kLabelPreset);
+    return isHounsfield(volume) ? findPreset(kScanPreset) : nullptr;
+}
+
+Optics defaultOptics(const Volume& volume) {
+    const Preset* const preset = defaultPreset(volume);
+    Optics optics;
+    optics.transferFunction = preset ? presetFunction(preset->name) : defaultRamp(volume);
+    if (preset && preset->values == Preset::Values::kLabels && volume.labels)
+        optics.transferFunction = withColors(optics.transferFunction, *volume.labels);
+    if (isLevelSet(volume)) optics.surface = Surface{};
+    const bool isScan = preset && preset->values == Preset::Values::kHounsfield;
+    if (isScan || optics.surface || volume.fromLevelSet) optics.shading = Shading{};
+    return optics;
 }
 
 }  // namespace deltasplat

@@ -9,8 +9,7 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "picture/picture_view.h"
-#include "picture/prepared_axis.h"
+#include "picture/draw_plan.h"
 #include "view/factorization.h"
 #include "volume/code_blocks.h"
 #include "words/joined_classes.h"
@@ -70,8 +69,7 @@ bool isSeen(const JoinedChange& change) {
 
 JoinJudge::Axis::Axis(const PreparedScene::Impl& scene, int ofAxis)
     : sliceAxis(ofAxis),
-      classes(classify(*scene.scene.volume, scene.optics,
-                       planeDistance(scene.scene.volume->worldFromIndex, ofAxis))),
+      classes(scene.straightClasses(ofAxis)),
       probe(listBlocks(*scene.scene.volume->codes, ofAxis, classes.classOfSlot()), ofAxis,
             classes.classOfSlot()) {}
 

@@ -32,7 +32,7 @@ class JoinJudge {
         Axis(const PreparedScene::Impl& scene, int sliceAxis);
 
         int sliceAxis;
-        ClassTable classes;
+        const ClassTable& classes;  // of the scene
         JoinProbe probe;
     };
     using Key = std::vector<std::uint64_t>;

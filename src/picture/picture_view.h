@@ -3,40 +3,14 @@
 
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "composite/slab_renderer.h"
 #include "optics/hold_rule.h"
+#include "picture/draw_plan.h"
 #include "picture/plane_view.h"
-#include "picture/prepared_axis.h"
-#include "picture/sheet_plan.h"
 #include "splat/digit_voxels.h"
-#include "volume/seen_cone.h"
 
 namespace deltasplat {
-
-/// How a camera sees a scene.
-struct ViewPlan {
-    /// @param keepsSlices  whether each has to be drawn by itself
-    ViewPlan(const PreparedScene::Impl& scene, const Camera& camera, bool keepsSlices,
-             const Listener& listener);
-
-    /// One, or one for each region of what an eye sees, of the volume's own voxels.
-    std::vector<Factorization> views;
-    SheetPlan sheets;  ///< all of a picture is drawn alike
-};
-
-/// Of a view, how long the way from one slice to the next is that colours are for, as a multiple of
-/// the straight one; from an eye, each pixel has its own.
-double stepsOf(const Factorization& view, const Volume& volume);
-
-/// Returns the index position (x, y, z) that lines of sight of a view begin at.
-/// @param view  from an eye
-glm::dvec3 indexOfEye(const Factorization& view);
-
-/// Returns what of the volume a view from an eye may show.
-SeenCone seenCone(const PreparedScene::Impl& scene, const Camera& camera, const Factorization& view,
-                  const SheetPlan& plan);
 
 /// @throw Error(kUsage) if the image has not the camera's size
 void requireSize(const Camera& camera, const Image& image);
@@ -45,17 +19,17 @@ void requireSize(const Camera& camera, const Image& image);
 /// the base plane, and how that is seen.
 class PictureView {
   public:
-    /// @param axis    of the view's slice axis
+    /// @param scene,camera  must outlive it
+    /// @param axis    that the plan asks for
     /// @param memory  for layers and sheets
-    PictureView(const PreparedScene::Impl& scene, const Camera& camera, const Factorization& view,
-                const SheetPlan& plan, std::shared_ptr<const PreparedAxis> axis,
-                KeptMemory& memory);
+    PictureView(const PreparedScene::Impl& scene, const Camera& camera, const ViewPlan& plan,
+                std::shared_ptr<const PreparedAxis> axis, KeptMemory& memory);
     // What slabs are made of refers to it.
     PictureView(const PictureView&) = delete;
     PictureView& operator=(const PictureView&) = delete;
 
     const SlabInput& slabs() const { return *slabs_; }
-    const Footprint& footprint() const { return footprint_; }
+    const ViewPlan& plan() const { return plan_; }
     const PreparedAxis& axis() const { return *axis_; }
     const Camera& camera() const { return camera_; }
     const PlaneView& plane() const { return *plane_; }
@@ -83,12 +57,9 @@ class PictureView {
 
     const PreparedScene::Impl& scene_;
     const Camera& camera_;
-    Factorization view_;
+    ViewPlan plan_;
     std::shared_ptr<const PreparedAxis> axis_;
-    double steps_;
-    std::optional<StepColors> colors_;  // if the axis' are those of other steps, or not lit
-    Factorization thinView_;
-    Footprint footprint_;
+    std::optional<StepColors> colors_;        // if the axis' are those of other steps, or not lit
     std::optional<DigitVoxels> digitVoxels_;  // of several digits, without own colours
     SheetLayout layout_;
     std::optional<PlaneView> plane_;

@@ -30,15 +30,13 @@ WarpFilter warpFilterOf(PictureFilter filter) {
 }  // namespace
 
 PlaneView::PlaneView(const Camera& camera, const PlanePlace& place)
-    : camera_(camera),
-      place_(place),
-      thin_(subdivided(place.view, place.parts)),
-      plane_(makePlane()) {}
+    : camera_(camera), place_(place), plane_(makePlane()) {}
 
 BasePlane PlaneView::makePlane() const {
     if (place_.view.eye)
-        return {thin_, camera_, place_.firstSlice, place_.firstVoxel, place_.spacing};
-    return {thin_, place_.firstSlice, place_.firstVoxel, place_.resolution, place_.offsetPixels};
+        return {place_.thin, camera_, place_.firstSlice, place_.firstVoxel, place_.spacing};
+    return {place_.thin, place_.firstSlice, place_.firstVoxel, place_.resolution,
+            place_.offsetPixels};
 }
 
 void PlaneView::finish(Layer& layer) const {
@@ -56,13 +54,13 @@ double PlaneView::showPart(const Layer& finished, const PicturePart& part,
     if (place_.color) raster.color = *place_.color;
     const WarpFilter filter = warpFilterOf(place_.filter);
     if (place_.view.eye)
-        return warpRegion(raster, camera_, place_.view, thin_, plane_, filter, part);
+        return warpRegion(raster, camera_, place_.view, place_.thin, plane_, filter, part);
     return warp(raster, plane_.pixelFromPicture(), filter, part,
                 *finished.values.get_allocator().resource());
 }
 
 PlaneBox PlaneView::readBy(const PixelBox& pixels) const {
-    if (place_.view.eye) return readByRegion(camera_, place_.view, thin_, plane_, pixels);
+    if (place_.view.eye) return readByRegion(camera_, place_.view, place_.thin, plane_, pixels);
     // As many times as a filter is wide, it reaches twice; the rest is what halving takes, and taps
     // that are read besides (warp.cpp).
     constexpr double kReach = 5;

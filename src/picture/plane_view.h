@@ -42,6 +42,7 @@ inline void requirePart(const PixelBox& part, glm::ivec2 size, const Image& imag
 struct PlanePlace {
     Factorization view;        ///< of the volume's own voxels
     Subdivision parts;         ///< what these are divided into
+    Factorization thin;        ///< of those: subdivided(view, parts)
     int firstSlice = 0;        ///< as SheetLayout::firstSlice
     glm::ivec2 firstVoxel{0};  ///< as SheetLayout::firstVoxel
     double resolution = 1;     ///< parallel: sheet pixels a voxel
@@ -80,7 +81,6 @@ class PlaneView {
 
     Camera camera_;
     PlanePlace place_;
-    Factorization thin_;
     BasePlane plane_;
 };
 

@@ -17,8 +17,6 @@
 #include "lighting/part_looks.h"
 #include "optics/class_numbers.h"
 #include "optics/hold_rule.h"
-#include "picture/picture_view.h"
-#include "picture/sheet_plan.h"
 #include "volume/box_voxels.h"
 #include "volume/code_blocks.h"
 #include "volume/seen_cone.h"
@@ -27,22 +25,6 @@
 
 namespace deltasplat {
 namespace {
-
-// A word costs much where voxels have looks of their own, for it is lit, and more than its voxels
-// do where these are written to pixels of their own, but they do cost: those of divided ones, whose
-// sheets are large, one by one.
-Encoding encodingOf(Method method, bool hasLooks, bool hasPixels, bool isDivided) {
-    switch (method) {
-        case Method::kAuto:
-            if (hasLooks) return Encoding::kFewerWords;
-            if (!hasPixels) return Encoding::kFewerWordsOrStamps;
-            return isDivided ? Encoding::kFewerWordsOrVoxels : Encoding::kFewerWordsOrWrites;
-        case Method::kDelta:
-            return Encoding::kChanges;
-        default:
-            return Encoding::kWhole;
-    }
-}
 
 // Optics as the volume has them, for levels to be seen by. Where a painter knows all colours,
 // classes tell opacities apart, nothing else.
@@ -78,16 +60,6 @@ bool shorterMayShowLess(const ClassTable& classes, double times) {
     return false;
 }
 
-// Whether slices have far more room than there are voxels. Then few of their pixels are made at a
-// time (plane_parts.h): of slices that are made anew those that show something there, of others all
-// from the first one on.
-bool isMostlyEmpty(const Volume& volume, int sliceAxis) {
-    constexpr double kLeast = 1 << 23;
-    const glm::dvec3 size = glm::dvec3(volume.box.max) - glm::dvec3(volume.box.min) + 1.0;
-    const double pixels = size[(sliceAxis + 1) % 3] * size[(sliceAxis + 2) % 3];
-    return pixels > std::max(kLeast, double(volume.activeCount));
-}
-
 // Returns how opaque a voxel of each class is along its shortest side: what is mixed must depend on
 // no camera.
 std::vector<float> opacitiesOf(const Volume& volume, const ClassTable& classes) {
@@ -110,37 +82,51 @@ void warnOfRounding(const SliceJoiner& joiner, const Listener& listener) {
                   std::to_string(1 << bits) + " levels a channel; `between` 0 draws every voxel");
 }
 
-// What an axis is to be.
-struct AxisRequest {
-    int sliceAxis;
-    bool descending;
-    Subdivision parts;
-    SeenThrough seenThrough;  // of joined slices, which of two is behind
-    double steps;
-    Encoding encoding = Encoding::kChanges;
-    SlabLength slabLength = SlabLength::kByCounts;
-    std::optional<SeenCone> seen = {};     // empty: all is
-    const PreparedAxis* before = nullptr;  // the same axis as other optics have it; null: none
-    bool mayBeParted = false;
-};
+// The index position (x, y, z) of the eye.
+glm::dvec3 indexOf(const SeenCone& seen, int sliceAxis) {
+    const glm::ivec3 order = sliceOrder(sliceAxis);
+    glm::dvec3 eye;
+    for (int i = 0; i < 3; ++i) eye[order[i]] = seen.eye[i];
+    return eye;
+}
 
 // Returns the words that other optics have, if these tell the same codes apart, or null; classes
 // then get the others' numbers. Where nothing is held and nothing has looks of its own, all that
 // words know of optics is the classes of codes; and of divided voxels how opaque these are, which
 // is left to the caller.
-std::shared_ptr<const PackedDeltas> sharedWords(const AxisRequest& request,
+// @param before  the same axis as other optics have it; null: none
+std::shared_ptr<const PackedDeltas> sharedWords(const AxisPlan& plan,
                                                 const PreparedScene::Impl& scene,
-                                                ClassTable& classes) {
-    const PreparedAxis* before = request.before;
+                                                const PreparedAxis* before, ClassTable& classes) {
     const bool areOfClasses = !scene.painter && scene.options.tolerance.isExact();
-    if (!before || !areOfClasses || before->packer || before->seen != request.seen) return {};
+    if (!before || !areOfClasses || before->packer || before->plan.seen != plan.seen) return {};
     return takeNumbers(before->classes(), classes) ? before->words : nullptr;
 }
 
-std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
-                                            const AxisRequest& request, const Listener& listener) {
-    const Subdivision& parts = request.parts;
-    const PreparedAxis* const before = request.before;
+// Returns the classes of whole voxels for an axis' steps, or for straight ones where shorter ones
+// would hide some; `first` becomes the steps that they are for.
+ClassTable classesOf(const PreparedScene::Impl& scene, const AxisPlan& plan, const Volume& levels,
+                     double& first) {
+    const Volume& volume = *scene.scene.volume;
+    const AxisKey& key = plan.key;
+    const double straight = planeDistance(volume.worldFromIndex, key.sliceAxis) / key.parts.slices;
+    const auto straightClasses = [&] {
+        return &levels == &volume ? scene.straightClasses(key.sliceAxis)
+                                  : classify(levels, scene.optics, straight);
+    };
+    // What is held does not depend on the camera: straight ways decide.
+    first = scene.options.tolerance.isExact() ? plan.steps : 1;
+    if (first == 1) return straightClasses();
+    ClassTable classes = classify(levels, scene.optics, straight * first);
+    if (!shorterMayShowLess(classes, first)) return classes;
+    first = 1;
+    return straightClasses();
+}
+
+// @param before  the same axis as other optics have it; null: none
+std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, const AxisPlan& plan,
+                                            const PreparedAxis* before, const Listener& listener) {
+    const Subdivision& parts = plan.key.parts;
     const Volume& volume = *scene.scene.volume;
     const Tolerance& tolerance = scene.options.tolerance;
     std::optional<ValueMixer> mixer;
@@ -148,22 +134,15 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     if (parts.divides() || (painter && painter->choosesClasses()))
         mixer.emplace(volume, parts, scene.options.keepsLone);
     const Volume& levels = mixer ? mixer->levels() : volume;
-    // What is held does not depend on the camera: straight ways decide.
-    const double straight = planeDistance(volume.worldFromIndex, request.sliceAxis) / parts.slices;
-    double first = tolerance.isExact() ? request.steps : 1;
-    ClassTable classes = classify(levels, scene.optics, straight * first);
-    if (first != 1 && shorterMayShowLess(classes, first)) {
-        first = 1;
-        classes = classify(levels, scene.optics, straight);
-    }
+    double first = 1;
+    ClassTable classes = classesOf(scene, plan, levels, first);
     listener.report(0.05);
     // Small footprints of two digits are never stamped.
-    Encoding encoding = request.encoding;
+    Encoding encoding = plan.key.encoding;
     if (encoding == Encoding::kFewerWordsOrStamps && !classes.oneDigit())
         encoding = Encoding::kFewerWords;
-    std::shared_ptr<const PackedDeltas> words = sharedWords(request, scene, classes);
-    const JoinedRun run{parts.joined, parts.joinedWithin, request.seenThrough,
-                        request.steps / first};
+    std::shared_ptr<const PackedDeltas> words = sharedWords(plan, scene, before, classes);
+    const JoinedRun run{parts.joined, parts.joinedWithin, plan.seenThrough, plan.steps / first};
     std::optional<SliceJoiner> joiner;
     if (parts.joined > 1) {
         joiner.emplace(joinerOf(classes, run));
@@ -174,14 +153,14 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
         opacities = opacitiesOf(volume, classes);
         if (words && opacities != opacitiesOf(volume, before->classes())) words = nullptr;
     }
-    PackOptions pack{request.sliceAxis, encoding, classes.classOfSlot(),
+    PackOptions pack{plan.key.sliceAxis, encoding, classes.classOfSlot(),
                      holdRule(levels, classes, tolerance), mixer ? &*mixer : nullptr};
-    pack.descending = request.descending;
+    pack.descending = plan.descending;
     if (joiner) pack.joiner = &*joiner;
     pack.slants = parts.joinedSlants();
     pack.joinedWithin = parts.joinedWithin;
-    pack.seen = request.seen;
-    pack.slabLength = request.slabLength;
+    pack.seen = plan.seen;
+    pack.slabLength = plan.key.slabLength;
     pack.opacities = opacities;
     const bool isLit = painter && painter->dependsOnCamera();
     std::unique_ptr<const LookLight> light;
@@ -199,7 +178,7 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     if (!words) {
         packer = std::make_shared<DeltaPacker>(volume, pack);
         const bool inParts =
-            request.mayBeParted && packer->canBeParted() && packer->mostBytes() > scene.wordBytes;
+            plan.mayBeParted && packer->canBeParted() && packer->mostBytes() > scene.wordBytes;
         words = std::make_shared<const PackedDeltas>(inParts ? packer->packOrPlan(scene.wordBytes)
                                                              : packer->packAll());
         joiner = packer->joiner();
@@ -208,25 +187,30 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene,
     if (joiner) {
         warnOfRounding(*joiner, listener);
         classes = joinedClasses(classes, *joiner, run);
-    } else if (request.steps != first) {
-        classes = classes.atSteps(request.steps);
+    } else if (plan.steps != first) {
+        classes = classes.atSteps(plan.steps);
         if (light) light = painter->lightOf(classes, nullptr);
     }
     StepColors colors = isLit ? StepColors(std::move(classes))
                               : StepColors(*words, std::move(classes), std::move(light));
-    return std::make_shared<const PreparedAxis>(
-        PreparedAxis{request.sliceAxis, parts, std::move(words), request.steps, std::move(colors),
-                     std::move(packer), std::move(joiner), request.seen});
-}
-
-std::size_t countBlocks(const PreparedScene::Impl& scene, int sliceAxis) {
-    const Volume& volume = *scene.scene.volume;
-    const ClassTable classes =
-        classify(volume, scene.optics, planeDistance(volume.worldFromIndex, sliceAxis));
-    return listBlocks(*volume.codes, sliceAxis, classes.classOfSlot()).size();
+    return std::make_shared<const PreparedAxis>(PreparedAxis{
+        plan, std::move(words), std::move(colors), std::move(packer), std::move(joiner)});
 }
 
 }  // namespace
+
+AxisKey AxisKey::otherWay() const {
+    AxisKey other = *this;
+    other.fromEnd = !fromEnd;
+    return other;
+}
+
+bool AxisKey::isAlike(const AxisKey& other) const {
+    AxisKey one = *this;
+    one.parts.slants = other.parts.slants;
+    one.steps = other.steps;
+    return one == other;
+}
 
 std::uint64_t PreparedAxis::stamps(Method method) const {
     if (method == Method::kTraditional) return voxelsOf(deltas().box);
@@ -240,7 +224,7 @@ std::shared_ptr<const PreparedAxis> PreparedAxis::withWords(const SlabRange& par
     // What is painted is not packed in parts.
     StepColors ofSome(*some, classes(), nullptr);
     return std::make_shared<const PreparedAxis>(
-        PreparedAxis{sliceAxis, parts, std::move(some), steps, std::move(ofSome)});
+        PreparedAxis{plan, std::move(some), std::move(ofSome)});
 }
 
 PreparedScene::Impl::Impl(Scene ofScene, SplatOptions withOptions, bool forOne, Axes before)
@@ -270,17 +254,25 @@ PreparedScene::Impl::Impl(const Impl& whole, std::size_t group)
       wordBytes(whole.wordBytes) {}
 
 PreparedScene::Impl::Impl(const Impl& before, Optics others)
-    : Impl({before.given, std::move(others)}, before.options, before.isForOne, before.axes()) {}
+    : Impl({before.given, std::move(others)}, before.options, before.isForOne, before.axes()) {
+    memory = before.memory;
+}
 
 PreparedScene::Impl::Axes PreparedScene::Impl::axes() const {
-    Axes axes = before_;
     // Of what is painted, words are not all that classes say, even where none are left.
-    if (painter) return axes;
+    if (painter) return before_;
+    Axes axes;
     const std::lock_guard lock(mutex_);
-    for (const auto& [key, place] : places_) {
+    for (const std::shared_ptr<Place>& place : places_) {
         const std::lock_guard placeLock(place->mutex);
-        if (place->axis) axes[key] = place->axis;
+        if (place->axis) axes.push_back({place->key, place->axis});
     }
+    const auto isKnown = [&](const KnownAxis& before) {
+        return std::any_of(axes.begin(), axes.end(),
+                           [&](const KnownAxis& known) { return known.key == before.key; });
+    };
+    for (const KnownAxis& before : before_)
+        if (!isKnown(before)) axes.push_back(before);
     return axes;
 }
 
@@ -290,100 +282,72 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::wholeAxis(Place& place)
     return lock && place.axis && place.axis->deltas().areWhole() ? place.axis : nullptr;
 }
 
-const PreparedAxis* PreparedScene::Impl::axisBefore(const Key& key, const Key& otherKey) const {
-    const auto same = before_.find(key);
-    if (same != before_.end()) return same->second.get();
-    const auto other = before_.find(otherKey);
-    const bool serves = other != before_.end() && other->second->deltas().areWhole();
-    return serves ? other->second.get() : nullptr;
+const PreparedAxis* PreparedScene::Impl::axisBefore(const AxisKey& key) const {
+    const auto find = [&](const AxisKey& wanted) -> const PreparedAxis* {
+        for (const KnownAxis& known : before_)
+            if (known.key == wanted) return known.axis.get();
+        return nullptr;
+    };
+    if (const PreparedAxis* same = find(key)) return same;
+    const PreparedAxis* other = find(key.otherWay());
+    return other && other->deltas().areWhole() ? other : nullptr;
 }
 
-void PreparedScene::Impl::forgetSlants(const Key& key) const {
-    const auto isOther = [&](const Places::value_type& one) {
-        const auto end = key.begin() + kKeyOfAllSlants;
-        return std::equal(key.begin(), end, one.first.begin()) && one.first != key;
+std::shared_ptr<PreparedScene::Impl::Place> PreparedScene::Impl::placeOf(const AxisKey& key) const {
+    for (const std::shared_ptr<Place>& place : places_)
+        if (place->key == key) return place;
+    return nullptr;
+}
+
+void PreparedScene::Impl::forgetSlants(const AxisKey& key) const {
+    const auto isOther = [&](const std::shared_ptr<Place>& place) {
+        return place->key.isAlike(key) && place->key != key;
     };
     std::uint64_t last = 0;
-    for (const auto& one : places_)
-        if (isOther(one)) last = std::max(last, one.second->lastUse);
+    for (const std::shared_ptr<Place>& place : places_)
+        if (isOther(place)) last = std::max(last, place->lastUse);
     // Who uses one holds it.
     std::erase_if(places_,
-                  [&](const auto& one) { return isOther(one) && one.second->lastUse != last; });
+                  [&](const auto& place) { return isOther(place) && place->lastUse != last; });
 }
 
 void PreparedScene::Impl::forgetOtherEyes(const glm::dvec3& eye) const {
-    std::erase_if(places_,
-                  [&](const auto& one) { return one.second->eye && *one.second->eye != eye; });
+    std::erase_if(places_, [&](const auto& place) { return place->eye && *place->eye != eye; });
 }
 
-std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const Factorization& view,
-                                                              const SheetPlan& plan,
-                                                              const Listener& listener,
-                                                              const Camera* camera,
-                                                              bool inParts) const {
-    const int sliceAxis = view.sliceAxis;
-    const Subdivision parts = plan.partsIn(view);
-    const bool isWhole =
-        painter ? painter->isEverywhereOther() || (view.eye && painter->dependsOnCamera())
-                : options.method == Method::kAuto && options.tolerance.isExact() &&
-                      isMostlyEmpty(*scene.volume, sliceAxis);
-    const bool hasPixels = plan.footprintWidth(view) == 1;
-    const Encoding encoding =
-        isWhole ? Encoding::kWhole
-                : encodingOf(options.method, painter != nullptr, hasPixels, parts.divides());
-    // Slices are walked from the front on. Whole ones do not depend on it.
-    const bool descending = !view.frontToBack && encoding != Encoding::kWhole;
-    // Of joined ones, what they look like does; of several colours, unless they are pairs, also how
-    // long steps are.
-    const bool isJoined = parts.joined > 1;
-    const bool areSums = hasOneColor() && parts.joinedWithin == 1;
-    const bool isOfSteps = isJoined && !areSums && (parts.joined > 2 || !canPairSlices());
-    const bool fromEnd = descending || (isJoined && !view.frontToBack);
-    AxisRequest request{sliceAxis, descending, parts,
-                        view.frontToBack ? SeenThrough::kSecond : SeenThrough::kFirst,
-                        isForOne || isOfSteps ? stepsOf(view, *scene.volume) : 1};
-    request.encoding = encoding;
-    // From an eye slabs are as long as they are, whatever is in them: what is seen is all that may
-    // be packed. What is held depends on all that lies before it.
-    request.slabLength = view.eye ? SlabLength::kShortest : SlabLength::kByCounts;
-    request.mayBeParted = isForOne && inParts;
-    const bool packsSeen = view.eye && camera && !scene.volume->empty() &&
-                           options.tolerance.isExact() && (isForOne || isJoined);
-    if (packsSeen) request.seen = seenCone(*this, *camera, view, plan);
+std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const AxisPlan& plan,
+                                                              const Listener& listener) const {
     // No other region sees the same.
-    if (packsSeen && isForOne) return prepare(*this, request, listener);
-    Key key{sliceAxis,    int(encoding), int(fromEnd), int(request.slabLength),
-            parts.slices, parts.within,  parts.joined, parts.joinedWithin};
-    for (const glm::ivec2& slant : parts.joinedSlants()) key.insert(key.end(), {slant.x, slant.y});
-    if (isOfSteps) key.push_back(std::bit_cast<std::int64_t>(request.steps));
-    Key otherKey = key;
-    otherKey[2] = int(!fromEnd);
+    if (plan.seen && isForOne) return prepare(*this, plan, nullptr, listener);
+    const AxisKey& key = plan.key;
+    const bool isJoined = key.parts.joined > 1;
     std::shared_ptr<Place> otherWay;
     std::shared_ptr<Place> place;
     {
         const std::lock_guard lock(mutex_);
-        if (packsSeen) forgetOtherEyes(indexOfEye(view));
-        const auto other = places_.find(otherKey);
-        if (other != places_.end()) otherWay = other->second;
-        std::shared_ptr<Place>& known = places_[key];
-        if (!known) known = std::make_shared<Place>();
-        known->lastUse = ++uses_;
-        if (packsSeen) known->eye = indexOfEye(view);
-        place = known;
-        if (isJoined && !view.eye) forgetSlants(key);
+        if (plan.seen) forgetOtherEyes(indexOf(*plan.seen, key.sliceAxis));
+        otherWay = placeOf(key.otherWay());
+        place = placeOf(key);
+        if (!place) {
+            place = std::make_shared<Place>();
+            place->key = key;
+            places_.push_back(place);
+        }
+        place->lastUse = ++uses_;
+        if (plan.seen) place->eye = indexOf(*plan.seen, key.sliceAxis);
+        if (isJoined && key.slabLength == SlabLength::kByCounts) forgetSlants(key);
     }
     const std::lock_guard lock(place->mutex);
     // Seen from elsewhere, it has other words.
-    if (place->axis && place->axis->seen != request.seen) place->axis = nullptr;
+    if (place->axis && place->axis->plan.seen != plan.seen) place->axis = nullptr;
     // Work of another picture, taken on while waiting here, might want the same axis.
     std::shared_ptr<const PreparedAxis> other;
     if (!place->axis && otherWay) other = wholeAxis(*otherWay);
     if (other && !isJoined) place->axis = other;
     if (!place->axis)
         isolated([&] {
-            const bool isOther = other && other->seen == request.seen;
-            request.before = isOther ? other.get() : axisBefore(key, otherKey);
-            place->axis = prepare(*this, request, listener);
+            const bool isOther = other && other->plan.seen == plan.seen;
+            place->axis = prepare(*this, plan, isOther ? other.get() : axisBefore(key), listener);
         });
     return place->axis;
 }
@@ -395,23 +359,40 @@ bool PreparedScene::Impl::canJoinSlices() const {
 bool PreparedScene::Impl::canPairSlices() const {
     if (!canJoinSlices()) return false;
     if (hasOneColor()) return true;
-    const std::lock_guard lock(blocksMutex_);
-    if (!canPairSlices_) {
-        double farthest = 0;
-        for (int axis = 0; axis < 3; ++axis)
-            farthest = std::max(farthest, planeDistance(scene.volume->worldFromIndex, axis));
-        // In shorter steps there are no more classes.
-        isolated(
-            [&] { canPairSlices_ = canBePaired(classify(*scene.volume, scene.optics, farthest)); });
-    }
+    const glm::dmat4& worldFromIndex = scene.volume->worldFromIndex;
+    int farthest = 0;
+    for (int axis = 1; axis < 3; ++axis)
+        if (planeDistance(worldFromIndex, axis) > planeDistance(worldFromIndex, farthest))
+            farthest = axis;
+    // In shorter steps there are no more classes.
+    const ClassTable& classes = straightClasses(farthest);
+    const std::lock_guard lock(factsMutex_);
+    if (!canPairSlices_) canPairSlices_ = canBePaired(classes);
     return *canPairSlices_;
 }
 
 std::size_t PreparedScene::Impl::blocksSeen(int sliceAxis) const {
-    const std::lock_guard lock(blocksMutex_);
+    const ClassTable& classes = straightClasses(sliceAxis);
+    const std::lock_guard lock(factsMutex_);
     std::optional<std::size_t>& blocks = blocksSeen_[std::size_t(sliceAxis)];
-    if (!blocks) isolated([&] { blocks = countBlocks(*this, sliceAxis); });
+    if (!blocks) {
+        isolated([&] {
+            blocks = listBlocks(*scene.volume->codes, sliceAxis, classes.classOfSlot()).size();
+        });
+    }
     return *blocks;
+}
+
+const ClassTable& PreparedScene::Impl::straightClasses(int sliceAxis) const {
+    const std::lock_guard lock(factsMutex_);
+    std::unique_ptr<const ClassTable>& classes = straightClasses_[std::size_t(sliceAxis)];
+    if (!classes) {
+        const double straight = planeDistance(scene.volume->worldFromIndex, sliceAxis);
+        isolated([&] {
+            classes = std::make_unique<const ClassTable>(classify(*scene.volume, optics, straight));
+        });
+    }
+    return *classes;
 }
 
 PreparedScene::PreparedScene(Scene scene, SplatOptions options) {

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <array>
-#include <map>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "base/kept_memory.h"
 #include "deltasplat/prepared_scene.h"
@@ -20,24 +21,50 @@
 
 namespace deltasplat {
 
-class SheetPlan;
+struct ViewPlan;
+
+/// Which words a slice axis has: those of equal keys are the same, of one scene.
+struct AxisKey {
+    int sliceAxis = 2;
+    Encoding encoding = Encoding::kChanges;
+    SlabLength slabLength = SlabLength::kByCounts;
+    bool fromEnd = false;  ///< slices are walked, or joined, from the last one on
+    Subdivision parts;
+    /// The steps of the view, where joined slices look different for other ones.
+    std::optional<double> steps;
+
+    bool operator==(const AxisKey&) const = default;
+    /// Returns that of the same slices in the other direction.
+    AxisKey otherWay() const;
+    /// Whether another differs in slants or steps at most.
+    bool isAlike(const AxisKey& other) const;
+};
+
+/// What an axis is to be.
+struct AxisPlan {
+    AxisKey key;
+    bool descending = false;                         ///< as PackedDeltas::descending
+    SeenThrough seenThrough = SeenThrough::kSecond;  ///< of joined slices, which of two is behind
+    double steps = 1;                   ///< that colours are for, straight ways from slice to slice
+    std::optional<SeenCone> seen = {};  ///< of which there are to be words; empty: of all
+    bool mayBeParted = false;           ///< whether words of a few slabs at a time will do
+};
 
 /// A volume as slices along one axis: what slabs are rendered from, by whatever camera that sees
 /// them from the same end, or from either if all are whole.
 struct PreparedAxis {
-    int sliceAxis;
-    Subdivision parts;
+    AxisPlan plan;
     std::shared_ptr<const PackedDeltas> words;  ///< other optics may share them
-    double steps;       ///< that colours are for, straight ways from slice to slice
     StepColors colors;  ///< of classes alone where looks depend on the camera
     /// Packs the words of a few slabs at a time, where all would take much memory: then there are
     /// none yet. Else null.
     std::shared_ptr<const DeltaPacker> packer = nullptr;
     std::optional<SliceJoiner> joiner = {};  ///< where slices are joined
-    std::optional<SeenCone> seen = {};       ///< of which there are words; empty: of all
 
     const PackedDeltas& deltas() const { return *words; }
     const ClassTable& classes() const { return colors.classes(); }
+    int sliceAxis() const { return plan.key.sliceAxis; }
+    const Subdivision& parts() const { return plan.key.parts; }
     /// Footprints that a method adds.
     std::uint64_t stamps(Method method) const;
     /// Returns the same with the words of some slabs, by the packer.
@@ -66,15 +93,8 @@ struct PreparedScene::Impl {
     /// The most that words of an axis are to take where a picture may be made in parts.
     double wordBytes = 256.0 * 1024 * 1024;
 
-    /// Returns the axis of a view, made if it is not there. Classes are coloured for the view's
-    /// steps if there will be no other picture. From an eye, what is lit looks different in each
-    /// slice, and slabs are whole.
-    /// @param camera   whose picture it is for: from an eye, what that does not see may be left
-    ///                 out; null: there is all
-    /// @param inParts  whether a few slabs at a time will do, of a scene for one picture
-    std::shared_ptr<const PreparedAxis> axis(const Factorization& view, const SheetPlan& plan,
-                                             const Listener& listener, const Camera* camera,
-                                             bool inParts = false) const;
+    /// Returns the axis that a plan asks for, made if it is not there.
+    std::shared_ptr<const PreparedAxis> axis(const AxisPlan& plan, const Listener& listener) const;
     /// Returns whether voxels differ in nothing but how much light they absorb, by the transfer
     /// function alone.
     bool hasOneColor() const { return deltasplat::hasOneColor(optics.transferFunction); }
@@ -86,21 +106,25 @@ struct PreparedScene::Impl {
     bool canPairSlices() const;
     /// Returns how many blocks of 8x8x8 voxels can be seen; counted once for each axis.
     std::size_t blocksSeen(int sliceAxis) const;
+    /// Returns the classes of whole voxels in straight steps along an axis; made once for each.
+    const ClassTable& straightClasses(int sliceAxis) const;
+    /// Memory for sheets and layers, which pictures of the scene leave for those behind them.
+    std::shared_ptr<KeptMemory> memory = std::make_shared<KeptMemory>();
 
   private:
-    // Axis, encoding, from which end slices are walked, how long slabs are, parts, how many slices
-    // and voxels beside each other are joined; then by which slants and for which steps.
-    using Key = std::vector<std::int64_t>;
-    static constexpr std::ptrdiff_t kKeyOfAllSlants = 8;
-    using Axes = std::map<Key, std::shared_ptr<const PreparedAxis>>;
+    struct KnownAxis {
+        AxisKey key;
+        std::shared_ptr<const PreparedAxis> axis;
+    };
+    using Axes = std::vector<KnownAxis>;
     struct Place {
         std::mutex mutex;
         std::shared_ptr<const PreparedAxis> axis;
+        AxisKey key;
         // Guarded as places_ are:
         std::uint64_t lastUse = 0;
         std::optional<glm::dvec3> eye;  // that sees all that is there; empty: there is all
     };
-    using Places = std::map<Key, std::shared_ptr<Place>>;
 
     Impl(Scene ofScene, SplatOptions withOptions, bool forOne, Axes before);
 
@@ -108,9 +132,11 @@ struct PreparedScene::Impl {
     // there is none yet.
     static std::shared_ptr<const PreparedAxis> wholeAxis(Place& place);
     // Returns an axis of other optics whose words may serve, or null.
-    const PreparedAxis* axisBefore(const Key& key, const Key& otherKey) const;
+    const PreparedAxis* axisBefore(const AxisKey& key) const;
+    // Returns the place of a key, or null.
+    std::shared_ptr<Place> placeOf(const AxisKey& key) const;
     // Forgets axes of other slants than a key's, but for the one that was used last.
-    void forgetSlants(const Key& key) const;
+    void forgetSlants(const AxisKey& key) const;
     // Forgets axes of which only is there what another eye sees.
     void forgetOtherEyes(const glm::dvec3& eye) const;
     // Returns those that are there of classes alone, and those of optics before for which there are
@@ -119,26 +145,13 @@ struct PreparedScene::Impl {
 
     const Axes before_;  // of other optics
     mutable std::mutex mutex_;
-    mutable Places places_;
+    mutable std::vector<std::shared_ptr<Place>> places_;
     mutable std::uint64_t uses_ = 0;
-    mutable std::mutex blocksMutex_;
-    mutable std::array<std::optional<std::size_t>, 3> blocksSeen_;  // [slice axis]
+    // Facts of the volume that plans ask for; [slice axis].
+    mutable std::mutex factsMutex_;
+    mutable std::array<std::unique_ptr<const ClassTable>, 3> straightClasses_;
+    mutable std::array<std::optional<std::size_t>, 3> blocksSeen_;
     mutable std::optional<bool> canPairSlices_;
 };
-
-class DeepStages;
-
-/// What a picture is cut into in depth.
-struct DeepRequest {
-    int slicesPerSample;  ///< 0: one of those that slices are divided into
-    DeepStages& stages;
-};
-
-/// As the public one, of a scene's insides, into a picture of the camera's size that is clear.
-/// @param memory  for sheets and layers
-/// @param deep    if the picture is wanted stage by stage as well
-RenderStats renderComposite(const PreparedScene::Impl& scene, const Camera& camera,
-                            KeptMemory& memory, Image& image, const Listener& listener,
-                            const DeepRequest* deep = nullptr);
 
 }  // namespace deltasplat

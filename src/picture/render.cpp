@@ -9,8 +9,9 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
-#include "picture/prepared_axis.h"
+#include "deltasplat/optics/presets.h"
 #include "picture/rays/ray_render.h"
+#include "picture/render_views.h"
 #include "screen/clear_image.h"
 #include "volume/box_voxels.h"
 
@@ -76,25 +77,25 @@ RenderResult render(const Volume& volume, const RenderOptions& options, const Li
     const DefaultFloats floats;
     RenderResult result;
     const auto makePicture = [&](const Volume& seen) {
-        result.camera = makeCamera(options.camera, seen.box, seen.worldFromIndex, seen.space);
+        result.camera = makeCamera(options.camera, seen);
         requireImageMemory(result.camera.sizePixels);
         result.image = clearImage(result.camera.sizePixels);
     };
     RenderStats& stats = result.stats;
     stats.voxels = voxelsOf(volume.box);
     stats.mode = options.mode;
-    stats.method = options.method;
+    stats.method = options.splat.method;
     if (options.mode == Mode::kComposite) {
         // A camera that cannot be is refused before there is work.
         if (options.optics.parts.empty()) makePicture(volume);
         // The volume outlives the scene.
         const std::shared_ptr<const Volume> borrowed(std::shared_ptr<const Volume>(), &volume);
         const Clock::time_point start = Clock::now();
-        const PreparedScene::Impl scene({borrowed, options.optics}, options, true);
+        const PreparedScene::Impl scene({borrowed, options.optics}, options.splat, true);
         const double sceneSeconds = secondsSince(start);
         if (!options.optics.parts.empty()) makePicture(*scene.scene.volume);
         KeptMemory memory;
-        stats = renderComposite(scene, result.camera, memory, result.image, listener);
+        stats = renderImage(scene, result.camera, memory, result.image, listener);
         stats.prepareSeconds += sceneSeconds;
     } else {
         makePicture(volume);
@@ -102,6 +103,13 @@ RenderResult render(const Volume& volume, const RenderOptions& options, const Li
     }
     listener.report(1);
     return result;
+}
+
+RenderResult render(const Volume& volume, const Listener& listener) {
+    RenderOptions options;
+    options.optics = defaultOptics(volume);
+    options.splat.mostJoined = kMostJoined;
+    return render(volume, options, listener);
 }
 
 }  // namespace deltasplat

@@ -43,7 +43,7 @@ struct Scenes {
         : first(first) {
         for (std::size_t i = 0; i < kMethods.size(); ++i) {
             const std::size_t m = methodAt(i);
-            SplatOptions ofMethod = options;
+            SplatOptions ofMethod = options.splat;
             ofMethod.method = kMethods[m];
             of[m] = std::make_unique<PreparedScene>(Scene{volume, options.optics}, ofMethod);
         }
@@ -52,7 +52,6 @@ struct Scenes {
 
     std::size_t first;
     std::array<std::unique_ptr<PreparedScene>, 3> of;
-    std::array<Renderer, 3> renderers;
 };
 
 struct Setting {
@@ -86,7 +85,7 @@ void addRounds(Scenes& scenes, const Camera& camera, int rounds, Setting& settin
         for (std::size_t i = 0; i < kMethods.size(); ++i) {
             const std::size_t m = scenes.methodAt(i);
             const Clock::time_point start = Clock::now();
-            const RenderStats stats = scenes.renderers[m].render(*scenes.of[m], camera, image);
+            const RenderStats stats = scenes.of[m]->render(camera, image);
             setting.least[m] = std::min(setting.least[m], secondsSince(start));
             setting.stamps[m] = stats.stamps;
         }
@@ -103,8 +102,7 @@ void measureSettings(const std::shared_ptr<const Volume>& volume, const RenderOp
             CameraOptions at;
             at.view = setting.view;
             at.sizePixels = setting.size;
-            const Camera camera =
-                makeCamera(at, volume->box, volume->worldFromIndex, volume->space);
+            const Camera camera = makeCamera(at, *volume);
             Setting unused = setting;
             addRounds(scenes, camera, 1, unused);  // prepares
             addRounds(scenes, camera, rounds, setting);

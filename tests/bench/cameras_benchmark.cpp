@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders a volume as cameras that go round it see it, all of them three ways: each picture for
-// itself (`render`), of a scene that is prepared once, and of that by a Renderer, which keeps its
-// memory. Prints milliseconds a picture, medians, and page faults a picture.
+// Renders a volume as cameras that go round it see it, both ways: each picture for itself
+// (`render`), and of a scene that is prepared once. Prints milliseconds a picture, medians, and
+// page faults a picture.
 //   cameras_benchmark CAMERAS SIZE TRANSFER_FUNCTION.json FILE...
 #include <sys/resource.h>
 
@@ -55,18 +55,14 @@ void measureFile(const char* file, const char* transferFunction, int cameras, in
     for (int i = 0; i < cameras; ++i) render(*volume, optionsOf(i));  // warms up
     measure("render", cameras, [&](int i) { render(*volume, optionsOf(i)); });
 
-    const PreparedScene scene({volume, options.optics}, options);
-    const auto cameraOf = [&](int i) {
-        return makeCamera(optionsOf(i).camera, volume->box, volume->worldFromIndex, volume->space);
-    };
+    const PreparedScene scene({volume, options.optics}, options.splat);
+    const auto cameraOf = [&](int i) { return makeCamera(optionsOf(i).camera, *volume); };
     Image image(options.camera.sizePixels);
     const Clock::time_point start = Clock::now();
-    for (int i = 0; i < cameras; ++i) renderComposite(scene, cameraOf(i), image);
+    for (int i = 0; i < cameras; ++i) scene.render(cameraOf(i), image);
     std::printf("  the first round, which prepares: %.2f ms a picture\n",
                 1e3 * secondsSince(start) / cameras);
-    measure("prepared", cameras, [&](int i) { renderComposite(scene, cameraOf(i), image); });
-    Renderer renderer;
-    measure("Renderer", cameras, [&](int i) { renderer.render(scene, cameraOf(i), image); });
+    measure("prepared", cameras, [&](int i) { scene.render(cameraOf(i), image); });
 }
 
 }  // namespace

@@ -35,8 +35,7 @@ void measureFile(const char* file, const char* transferFunction, int pictures, i
     options.camera.direction = {-1, 0.8, -0.6};
     options.camera.up = {0, 0, 1};
     options.camera.sizePixels = glm::ivec2(size);
-    const Camera camera =
-        makeCamera(options.camera, volume->box, volume->worldFromIndex, volume->space);
+    const Camera camera = makeCamera(options.camera, *volume);
     const struct {
         const char* name;
         Change change;
@@ -52,11 +51,10 @@ void measureFile(const char* file, const char* transferFunction, int pictures, i
          }},
     };
     std::printf("%s\n", file);
-    Renderer renderer;
     Image image(options.camera.sizePixels);
     for (const auto& one : cases) {
-        const PreparedScene first({volume, options.optics}, options);
-        renderer.render(first, camera, image);
+        const PreparedScene first({volume, options.optics}, options.splat);
+        first.render(camera, image);
         std::vector<double> prepare[2];
         std::vector<double> whole[2];
         for (int i = 0; i < pictures; ++i) {
@@ -64,10 +62,10 @@ void measureFile(const char* file, const char* transferFunction, int pictures, i
             one.change(i, optics);
             for (const bool keeps : {false, true}) {
                 const Clock::time_point start = Clock::now();
-                const PreparedScene scene =
-                    keeps ? first.withOptics(optics) : PreparedScene({volume, optics}, options);
+                const PreparedScene scene = keeps ? first.withOptics(optics)
+                                                  : PreparedScene({volume, optics}, options.splat);
                 const double made = secondsSince(start);
-                const RenderStats stats = renderer.render(scene, camera, image);
+                const RenderStats stats = scene.render(camera, image);
                 whole[keeps].push_back(1e3 * secondsSince(start));
                 prepare[keeps].push_back(1e3 * (made + stats.prepareSeconds));
             }

@@ -42,7 +42,7 @@ class Pictures {
         std::vector<double> seconds;
         for (int i = 0; i < kWarmUp + kPictures; ++i) {
             const Clock::time_point start = Clock::now();
-            renderer_.render(scene_, camera_, image_);
+            scene_.render(camera_, image_);
             if (i >= kWarmUp) seconds.push_back(secondsSince(start));
         }
         return partOf(seconds, 0.5);
@@ -51,7 +51,6 @@ class Pictures {
   private:
     const PreparedScene& scene_;
     const Camera& camera_;
-    Renderer renderer_;
     Image image_;
 };
 
@@ -73,9 +72,8 @@ void measure(const char* file, const char* transferFunction, int rounds, int thr
     options.optics.transferFunction = readTransferFunction(transferFunction);
     options.camera.direction = glm::dvec3(-1, 0.8, -0.6);
     options.camera.up = glm::dvec3(0, 0, 1);
-    const PreparedScene scene({volume, options.optics}, options);
-    const Camera camera =
-        makeCamera(options.camera, volume->box, volume->worldFromIndex, volume->space);
+    const PreparedScene scene({volume, options.optics}, options.splat);
+    const Camera camera = makeCamera(options.camera, *volume);
     std::vector<Pictures> pictures;
     for (int i = 0; i < threads; ++i) pictures.emplace_back(scene, camera);
     std::vector<double> one;

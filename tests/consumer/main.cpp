@@ -24,9 +24,9 @@ int main() {
 
     // The same, prepared for many cameras.
     const auto shared = std::make_shared<const Volume>(volume);
-    const PreparedScene scene({shared, options.optics}, options);
+    const PreparedScene scene({shared, options.optics}, options.splat);
     Image image(result.camera.sizePixels);
-    renderComposite(scene, result.camera, image);
+    scene.render(result.camera, image);
     if (image.rgba != result.image.rgba) return 1;
 
     const float alpha = result.image.pixel(16, 16)[3];

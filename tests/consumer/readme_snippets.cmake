@@ -1,5 +1,4 @@
-# The README's C++ compiles with the headers that it shows: each snippet is a file of its own, and
-# what is no program becomes a function.
+# The README's C++ compiles with the headers that it shows.
 set(readme ${PROJECT_SOURCE_DIR}/README.md)
 set(snippets ${CMAKE_CURRENT_BINARY_DIR}/consumer/readme)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${readme})
@@ -7,6 +6,5 @@ file(MAKE_DIRECTORY ${snippets})
 execute_process(COMMAND awk -v folder=${snippets} -f ${CMAKE_CURRENT_LIST_DIR}/scripts/snippets.awk
                         ${readme}
                 COMMAND_ERROR_IS_FATAL ANY)
-add_library(readme_snippets OBJECT ${snippets}/1.cpp ${snippets}/2.cpp ${snippets}/3.cpp
-                                   ${snippets}/4.cpp)
+add_library(readme_snippets OBJECT ${snippets}/1.cpp)
 target_link_libraries(readme_snippets PRIVATE deltasplat::deltasplat)

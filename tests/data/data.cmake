@@ -1,10 +1,6 @@
 # These need the data sets beside the repository, and say so where they are not there.
-deltasplat_test(data/axis_change_test.cpp)
-deltasplat_test(data/perspective_data_test.cpp)
-deltasplat_test(data/tolerance_data_test.cpp)
-deltasplat_test(data/convert_data_test.cpp)
-deltasplat_test(data/delta_data_test.cpp)
-deltasplat_test(data/diff_data_test.cpp)
-deltasplat_test(data/ingest_data_test.cpp)
-deltasplat_test(data/formats_data_test.cpp)
-target_compile_definitions(formats_data_test PRIVATE DELTASPLAT_DICOM=$<BOOL:${DELTASPLAT_DICOM}>)
+deltasplat_tests(data_tests data
+    data/axis_change_test.cpp data/perspective_data_test.cpp data/tolerance_data_test.cpp
+    data/convert_data_test.cpp data/delta_data_test.cpp data/diff_data_test.cpp
+    data/ingest_data_test.cpp data/formats_data_test.cpp)
+target_compile_definitions(data_tests PRIVATE DELTASPLAT_DICOM=$<BOOL:${DELTASPLAT_DICOM}>)

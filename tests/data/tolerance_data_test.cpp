@@ -53,9 +53,9 @@ TEST(ToleranceData, NoPixelIsFartherOffThanProved) {
         options.camera.direction = glm::dvec3(-1, 0.8, -0.6);
         options.camera.sizePixels = {128, 128};
         // As pictures with a tolerance are, for which the bound is.
-        options.mostJoined = 1;
+        options.splat.mostJoined = 1;
         const RenderResult exact = render(volume, options);
-        options.tolerance.relative = 0.05;
+        options.splat.tolerance.relative = 0.05;
         const RenderResult held = render(volume, options);
         const double alpha = largestDifference(held.image, exact.image, true);
         const double color = largestDifference(held.image, exact.image, false);

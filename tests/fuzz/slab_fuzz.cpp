@@ -6,7 +6,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "deltasplat/slab_part.h"
+#include "deltasplat/slabs.h"
 #include "fuzz/fuzz_target.h"
 #include "support/some_scene.h"
 #include "unit/temp_folder.h"
@@ -50,8 +50,7 @@ std::string repaired(std::string bytes) {
 
 void foldAndShow(const std::string& file) {
     const std::filesystem::path parts[] = {file};
-    FoldedPicture folded(parts);
-    folded.fold();
+    Picture folded = SlabFiles(parts).fold();
     const glm::ivec2 size = folded.camera().sizePixels;
     if (size.x > 64 || size.y > 64) return;
     Image image(size);
@@ -68,8 +67,8 @@ std::vector<std::string> seeds() {
         const PreparedScene scene({test::someVolume(), test::someOptics(colors)}, SplatOptions());
         for (const std::size_t i : {1, 5, 8}) {
             cameras[i].sizePixels = {16, 8};
-            writeSlabPart(LayeredPicture(scene, test::cameraOf(*scene.scene().volume, cameras[i])),
-                          {}, {}, folder / "seed");
+            writeSlabs(SlabPicture(scene, test::cameraOf(*scene.scene().volume, cameras[i])), {},
+                       {}, folder / "seed");
             inputs.push_back(test::readBytes(folder / "seed"));
         }
     }

@@ -1,7 +1,7 @@
-deltasplat_test(golden/golden_test.cpp
+deltasplat_tests(golden_tests golden golden/golden_test.cpp
     SOURCES golden/golden_scenes.cpp golden/golden_volumes.cpp)
 # glibc then takes its functions for processors without FMA.
-add_test(NAME golden.without_fma COMMAND golden_test)
+add_test(NAME golden.without_fma COMMAND golden_tests)
 set_tests_properties(golden.without_fma PROPERTIES LABELS golden TIMEOUT 600
     ENVIRONMENT GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F)
 add_test(NAME golden.no_library_functions

@@ -84,7 +84,7 @@ class Scenes {
     }
     void addJoined(const std::string& name, const std::string& volume, const CameraOptions& camera,
                    const TransferFunction& function, int joined = 2, int within = 1) {
-        add(name, volume, camera, function).mostJoined = joined;
+        add(name, volume, camera, function).splat.mostJoined = joined;
         scenes_.back().joined = joined;
         scenes_.back().joinedWithin = within;
     }
@@ -118,10 +118,10 @@ void addFunctions(Scenes& scenes) {
     for (const PictureFilter filter :
          {PictureFilter::kMitchell, PictureFilter::kGauss, PictureFilter::kBox}) {
         const std::string name = "filter-" + pictureFilterName(filter);
-        scenes.add(name, "engine", turned(40, 20), colored()).filter = filter;
+        scenes.add(name, "engine", turned(40, 20), colored()).splat.filter = filter;
         CameraOptions eye = turned(40, 20);
         eye.projection = Projection::kPerspective;
-        scenes.add(name + "-eye", "engine", eye, colored()).filter = filter;
+        scenes.add(name + "-eye", "engine", eye, colored()).splat.filter = filter;
     }
     scenes.add("bent", "hydrogen", turned(12, 34), bent());
     scenes.add("bent-axis", "marschner-lobb", cameraOf("left"), bent());
@@ -138,24 +138,24 @@ void addFunctions(Scenes& scenes) {
 }
 
 void addOptions(Scenes& scenes) {
-    scenes.add("sigma-narrow", "engine", turned(10, 20), colored()).sigma = 0.25;
-    scenes.add("sigma-wide", "engine", turned(10, 20), colored()).sigma = 0.9;
-    scenes.add("sigma-very-wide", "few", turned(-20, 50), colored()).sigma = 2.5;
+    scenes.add("sigma-narrow", "engine", turned(10, 20), colored()).splat.sigma = 0.25;
+    scenes.add("sigma-wide", "engine", turned(10, 20), colored()).splat.sigma = 0.9;
+    scenes.add("sigma-very-wide", "few", turned(-20, 50), colored()).splat.sigma = 2.5;
     for (const int resolution : {1, 2, 3, 5}) {
         scenes
             .add("resolution-" + std::to_string(resolution), "shepp-logan", turned(-25, 12),
                  colored())
-            .resolution = resolution;
+            .splat.resolution = resolution;
     }
-    scenes.add("tolerance", "noisy", turned(35, 20), colored()).tolerance.relative = 0.1;
-    scenes.add("tolerance-value", "noisy", turned(35, 20), colored()).tolerance.value = 4;
+    scenes.add("tolerance", "noisy", turned(35, 20), colored()).splat.tolerance.relative = 0.1;
+    scenes.add("tolerance-value", "noisy", turned(35, 20), colored()).splat.tolerance.value = 4;
     scenes.add("extinction", "noisy", turned(35, 20), oneColor(0.05)).optics.extinctionScale = 7;
     scenes.add("unit-distance", "hydrogen", turned(5, 75), colored()).optics.unitDistance = 0.3;
     scenes.add("range", "marschner-lobb", cameraOf("iso"), colored()).optics.range =
         glm::dvec2(9000, 51000);
-    scenes.add("traditional", "few", turned(55, 35), colored()).method = Method::kTraditional;
-    scenes.add("sparse", "few", turned(54, 35), colored()).method = Method::kSparse;
-    scenes.add("delta", "few", turned(53, 35), colored()).method = Method::kDelta;
+    scenes.add("traditional", "few", turned(55, 35), colored()).splat.method = Method::kTraditional;
+    scenes.add("sparse", "few", turned(54, 35), colored()).splat.method = Method::kSparse;
+    scenes.add("delta", "few", turned(53, 35), colored()).splat.method = Method::kDelta;
 }
 
 void addRays(Scenes& scenes) {
@@ -233,7 +233,7 @@ void addLooks(Scenes& scenes) {
     scenes.add("shaded-decades", "decades", turned(33, 21), colored()).optics.shading = shading;
     RenderOptions& divided = scenes.add("shaded-divided", "cloud", turned(10, 50), bent());
     divided.optics.shading = shading;
-    divided.between = 1;
+    divided.splat.between = 1;
     CameraOptions camera = turned(33, 21);
     camera.projection = Projection::kPerspective;
     camera.fovDegrees = 60;
@@ -243,7 +243,7 @@ void addLooks(Scenes& scenes) {
             scenes.add("surface-" + std::to_string(between), "engine", turned(33, 21), colored());
         surface.optics.surface = Surface{90, {0.8, 0.6, 0.5}};
         surface.optics.shading = shading;
-        surface.between = between;
+        surface.splat.between = between;
     }
     scenes.add("gradient-opacity", "cloud", turned(10, 50), bent()).optics.gradientOpacity = {
         {0, 0.1}, {0.02, 0.9}};

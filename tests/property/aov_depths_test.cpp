@@ -186,8 +186,8 @@ void expectThoseOfADeepPicture(std::optional<double> sigma, double least) {
         RenderOptions options;
         options.optics = test::someOptics(test::Colors::kSeveral);
         options.camera = cameraOptions;
-        options.between = 0;
-        options.sigma = sigma;
+        options.splat.between = 0;
+        options.splat.sigma = sigma;
         const double opacity = 0.7;
         DeepImage deep;
         const RenderResult flat = renderDeep(*volume, options, {1}, deep);
@@ -244,7 +244,7 @@ TEST(AovDepths, areTheSameForEveryMethodAndThread) {
         options.optics = test::someOptics(test::Colors::kLit);
         options.camera = test::someCameras()[std::size_t(camera)];
         test::expectTheSameHoweverMade([&](Method method) {
-            options.method = method;
+            options.splat.method = method;
             return channelsOf(*volume, options, test::cameraOf(*volume, options.camera),
                               {Aov::kDepth, Aov::kFront, Aov::kBack, Aov::kSamples});
         });
@@ -262,7 +262,7 @@ TEST(AovDepths, ofTwoLayersAreThoseOfTheirSum) {
     whole.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {1000, 0.3, 0.5, 0}};
     whole.optics.transferFunction.colors = {{0, glm::dvec3(1)}};
     whole.optics.unitDistance = 1;
-    whole.between = 0;
+    whole.splat.between = 0;
     RenderOptions halves = whole;
     halves.optics.extinctionScale = 0.5;
     MediumPart half;
@@ -317,7 +317,7 @@ TEST(AovDepths, ofASurfaceAreWhereItIsMet) {
             RenderOptions options;
             options.optics.surface = Surface{30000, {0.5, 0.5, 0.5}};
             options.camera = cameraOptions;
-            options.between = between;
+            options.splat.between = between;
             const Camera camera = test::cameraOf(volume, cameraOptions);
             const Channels channels = channelsOf(
                 volume, options, camera, {Aov::kDepth, Aov::kFront, Aov::kBack, Aov::kPosition});

@@ -148,7 +148,7 @@ TEST(AovMattes, areTheSameForEveryMethodAndThread) {
     RenderOptions options = optionsOf(test::someCameras()[6]);
     options.optics.parts.push_back(layer(volume, ramp({0, 1, 1}, 0.4), 0.5));
     test::expectTheSameHoweverMade([&](Method method) {
-        options.method = method;
+        options.splat.method = method;
         return mattesOf(*volume, options, test::cameraOf(*volume, options.camera))[1].values;
     });
 }

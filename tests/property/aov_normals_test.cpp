@@ -87,7 +87,7 @@ TEST(AovNormals, ofABallAreItsRadii) {
             for (const CameraOptions& cameraOptions : cameras()) {
                 RenderOptions options;
                 options.camera = cameraOptions;
-                options.between = between;
+                options.splat.between = between;
                 if (isSurface) options.optics.surface = Surface{30000, {0.2, 0.5, 0.9}};
                 options.optics.transferFunction.colors = {{0, {0, 0.5, 1}}, {60000, {1, 1, 0}}};
                 options.optics.transferFunction.opacities = {{29500, 0, 0.5, 0},
@@ -128,7 +128,7 @@ TEST(AovNormals, areTheSameForEveryMethodAndThread) {
         options.optics = test::someOptics(Colors::kSeveral);
         options.camera = test::someCameras()[std::size_t(camera)];
         test::expectTheSameHoweverMade([&](Method method) {
-            options.method = method;
+            options.splat.method = method;
             return normalsOf(*volume, options);
         });
     }

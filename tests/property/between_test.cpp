@@ -70,11 +70,11 @@ TEST(Between, isTheVolumeWithValuesMixedByHand) {
                 options.camera.sizePixels = {60, 60};
                 options.optics.transferFunction = testTransferFunction(0.7);
                 options.optics.unitDistance = 1;
-                options.between = between;
-                options.resolution = within;
+                options.splat.between = between;
+                options.splat.resolution = within;
                 const RenderResult mixed = render(volume, options);
-                options.between = 0;
-                options.resolution = 1;
+                options.splat.between = 0;
+                options.splat.resolution = 1;
                 const RenderResult expected = render(thin, options);
                 EXPECT_EQ(mixed.stats.slices, 21 * (between + 1));
                 EXPECT_EQ(mixed.stats.resolution, within);
@@ -110,15 +110,15 @@ TEST(Between, isOneWhereTheScreenAsksForTwoPixelsAVoxel) {
     EXPECT_EQ(statsAt(1.6).between, 1);
     EXPECT_EQ(statsAt(1.6).resolution, 2);
     EXPECT_EQ(statsAt(1.6).voxels, 8u * 24 * 24 * 24);
-    options.resolution = 2;
+    options.splat.resolution = 2;
     EXPECT_EQ(statsAt(1.6).between, 0);
-    options.resolution = {};
-    options.between = 1;
+    options.splat.resolution = {};
+    options.splat.between = 1;
     EXPECT_EQ(statsAt(1).resolution, 2);
-    options.between = 0;
+    options.splat.between = 0;
     EXPECT_EQ(statsAt(1.6).voxels, 24u * 24 * 24);
     // What is thin stays as it is,
-    options.between = {};
+    options.splat.between = {};
     options.optics.transferFunction = testTransferFunction(0.2);
     EXPECT_EQ(statsAt(1.6).between, 0);
     EXPECT_EQ(statsAt(1.6).resolution, 1);
@@ -160,10 +160,10 @@ TEST(Between, isNotChosenWhereThereAreTooManyBlocks) {
         EXPECT_EQ(statsAt(4.9).footprint > 1, areTooMany);
         EXPECT_EQ(statsAt(5.1).resolution, 2);
         // Who asks for something gets what the screen asks for.
-        options.sigma = 0.3;
+        options.splat.sigma = 0.3;
         EXPECT_EQ(statsAt(2).resolution, 2);
-        options.sigma = {};
-        options.between = 0;
+        options.splat.sigma = {};
+        options.splat.between = 0;
         EXPECT_EQ(statsAt(2).resolution, 2);
         ASSERT_EQ(warnings.size(), areTooMany ? 6u : 0u);
         if (areTooMany) {
@@ -209,7 +209,7 @@ TEST(Between, isNoneOfLabels) {
 
 TEST(Between, findsWhatIsSeenAcrossCorners) {
     RenderOptions options;
-    options.between = 1;
+    options.splat.between = 1;
     options.camera.direction = {0, 0, -1};
     options.camera.frameWidthWorld = 8;
     options.camera.sizePixels = {32, 32};
@@ -240,7 +240,7 @@ TEST(Between, GoesByVoxelsNotByTheBox) {
     options.camera.sizePixels = {16, 16};
     options.camera.frameWidthWorld = 8;
     for (const int between : {1, 7}) {
-        options.between = between;
+        options.splat.between = between;
         EXPECT_NO_THROW(render(volume, options)) << between;
     }
 }
@@ -260,7 +260,7 @@ TEST(Between, leavesAHomogeneousSlabAlone) {
             options.optics.transferFunction = testTransferFunction(0.5);
             options.optics.unitDistance = 3;
             for (const int between : {0, 1, 2, 3, 7}) {
-                options.between = between;
+                options.splat.between = between;
                 const double opacity = 0.5 * 200 / 255;
                 const double expected =
                     1 - std::exp(std::log(1 - opacity) * 7 / 3 / std::cos(angle));
@@ -447,7 +447,7 @@ TEST(Between, aNumberOutOfRangeIsRefused) {
     RenderOptions options;
     options.optics.transferFunction = testTransferFunction(0.2);
     for (const int between : {-1, kMostBetween + 1}) {
-        options.between = between;
+        options.splat.between = between;
         EXPECT_THROW(render(volume, options), Error);
     }
 }

@@ -80,8 +80,8 @@ TEST(ColorBy, agreesWithTheReference) {
             options.camera = view.options();
             options.optics.transferFunction = testTransferFunction(kOpacity);
             options.optics.colorBy = look;
-            options.sigma = 0.4;
-            options.resolution = 2;
+            options.splat.sigma = 0.4;
+            options.splat.resolution = 2;
             const RenderResult result = render(read, options);
             const auto expected = reference::renderSampled(voxels, view.view(), 0.4, 2);
             EXPECT_GE(psnr(result.image, expected), 60) << colorByName(look);
@@ -96,7 +96,7 @@ TEST(ColorBy, leavesOpacityToTheTransferFunction) {
         RenderOptions options;
         options.optics.transferFunction = testTransferFunction(kOpacity);
         options.camera.sizePixels = {64, 64};
-        options.between = between;
+        options.splat.between = between;
         const RenderResult plain = render(read, options);
         for (const ColorBy look : kLooks) {
             options.optics.colorBy = look;
@@ -137,8 +137,8 @@ TEST(ColorBy, whatHasAnotherColorIsAChange) {
     RenderOptions options;
     options.optics.transferFunction.opacities = {{0, 0.1, 0.5, 0}, {255, 0.1, 0.5, 0}};
     options.optics.transferFunction.colors = {{0, {1, 1, 1}}};
-    options.method = Method::kDelta;
-    options.between = 0;
+    options.splat.method = Method::kDelta;
+    options.splat.between = 0;
     options.camera.view = "front";
     const auto deltasBy = [&](ColorBy look) {
         options.optics.colorBy = look;
@@ -150,7 +150,7 @@ TEST(ColorBy, whatHasAnotherColorIsAChange) {
     EXPECT_EQ(deltasBy(ColorBy::kZ), std::uint64_t{16} * 16 * 16);
     EXPECT_EQ(deltasBy(ColorBy::kIndex), std::uint64_t{16} * 16 * 16);
     // A step of colours of a fifteenth is held until it is more than the tolerance.
-    options.tolerance.relative = 0.2;
+    options.splat.tolerance.relative = 0.2;
     EXPECT_LT(deltasBy(ColorBy::kIndex), std::uint64_t{16} * 16 * 16);
 }
 
@@ -167,7 +167,7 @@ TEST(ColorBy, staysWithinTheBoundOfATolerance) {
                 options.optics.transferFunction.opacities = {{60, 0, 0.5, 0}, {255, 0.4, 0.5, 0}};
                 options.optics.transferFunction.colors = {{0, {1, 0, 0.5}}};
                 const RenderResult exact = render(volume, options);
-                options.tolerance.relative = t;
+                options.splat.tolerance.relative = t;
                 const RenderResult held = render(volume, options);
                 double most[2] = {0, 0};
                 for (std::size_t i = 0; i < exact.image.rgba.size(); ++i) {
@@ -200,7 +200,7 @@ TEST(ColorBy, takesWhatHasNoExtent) {
     const Volume none = makeVolume({}, [](int, int, int) { return 9; });
     for (const ColorBy look : kLooks) {
         options.optics.colorBy = look;
-        options.between = 0;
+        options.splat.between = 0;
         EXPECT_EQ(render(one, options).stats.visible, 1u);
         const Image image = render(none, options).image;
         EXPECT_TRUE(std::all_of(image.rgba.begin(), image.rgba.end(),

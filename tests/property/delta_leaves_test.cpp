@@ -276,14 +276,14 @@ TEST(DeltaLeaves, PicturesAreTheSame) {
             options.camera.view = view;
             for (const std::optional<int> between :
                  {std::optional<int>(0), std::optional<int>(1)}) {
-                options.between = between;
+                options.splat.between = between;
                 const Volume quick = readVolume(kDeltas);
                 const auto expected = render(whole, options).image.rgba;
                 EXPECT_TRUE(render(source, options).image.rgba == expected);
                 EXPECT_TRUE(render(quick, options).image.rgba == expected);
                 test::expectTheSameHoweverMade([&](Method method) {
                     RenderOptions other = options;
-                    other.method = method;
+                    other.splat.method = method;
                     return render(readVolume(kDeltas), other).image.rgba;
                 });
             }
@@ -307,10 +307,10 @@ TEST(DeltaLeaves, PicturesThatNeedTheTreeAreTheSame) {
     EXPECT_TRUE(render(readVolume(kDeltas), options).image.rgba ==
                 render(whole, options).image.rgba);
     options.optics.shading.reset();
-    options.tolerance.value = 9;
+    options.splat.tolerance.value = 9;
     EXPECT_TRUE(render(readVolume(kDeltas), options).image.rgba ==
                 render(whole, options).image.rgba);
-    options.tolerance = {};
+    options.splat.tolerance = {};
     options.mode = Mode::kMip;
     EXPECT_TRUE(render(readVolume(kDeltas), options).image.rgba ==
                 render(whole, options).image.rgba);

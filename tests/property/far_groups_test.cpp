@@ -12,14 +12,14 @@
 #include <vector>
 
 #include "deltasplat/ground_shadow.h"
-#include "deltasplat/layered_picture.h"
 #include "deltasplat/memory_limit.h"
 #include "deltasplat/openvdb_grid.h"
-#include "deltasplat/parted_picture.h"
+#include "deltasplat/picture.h"
 #include "deltasplat/prepared_scene.h"
 #include "deltasplat/render.h"
 #include "deltasplat/render_aovs.h"
 #include "deltasplat/render_deep.h"
+#include "deltasplat/slabs.h"
 #include "support/same_picture.h"
 
 namespace deltasplat {
@@ -158,7 +158,7 @@ TEST(FarGroups, ofAllKindsOfColours) {
     surface.optics.shading = Shading{0.1, 0.6, 0.3, 7, {Light{}}};
     expectTheSame(surface);
     RenderOptions divided = someOptions();
-    divided.between = 3;
+    divided.splat.between = 3;
     expectTheSame(divided);
     RenderOptions mip = someOptions(Mode::kMip);
     mip.mipColors = true;
@@ -296,21 +296,21 @@ TEST(FarGroups, inPartsAndLayersAndDeep) {
     for (const CameraOptions& camera : {closeUps(behind)[0], closeUps(behind)[4]}) {
         RenderOptions options = someOptions();
         options.camera = camera;
-        options.mostJoined = 1;
+        options.splat.mostJoined = 1;
         const RenderResult whole = render(*both, options);
-        const PreparedScene scene({both, options.optics}, options);
+        const PreparedScene scene({both, options.optics}, options.splat);
         const glm::ivec2 size = whole.camera.sizePixels;
-        PartedPicture parted(scene, whole.camera);
+        Picture parted(scene, whole.camera);
         Image half({size.x, size.y / 2});
         parted.show({{0, size.y / 2}, size}, half);
         EXPECT_TRUE(
             std::equal(half.rgba.begin(), half.rgba.end(), whole.image.pixel(0, size.y / 2)));
 
-        const LayeredPicture layered(scene, whole.camera);
+        const SlabPicture layered(scene, whole.camera);
         std::vector<SlabLayer> layers;
         for (int i = 0; i < layered.slabs(); ++i) layers.push_back(layered.render(i));
         Image folded(size);
-        layered.fold(layers, folded);
+        layered.fold(layers).show({{0, 0}, size}, folded);
         EXPECT_EQ(folded.rgba, whole.image.rgba);
 
         DeepImage deep;

@@ -234,7 +234,7 @@ TEST(FloatValues, WideIntegersTellTheirOwnRange) {
 Image seenAlong(const Volume& volume, Mode mode, int axis) {
     RenderOptions options;
     options.mode = mode;
-    options.footprintWidth = 1;
+    options.splat.footprintWidth = 1;
     const char* const views[] = {"right", "top", "front"};
     options.camera.view = views[axis];
     const glm::ivec2 size = axis == 0   ? glm::ivec2(kDims.z, kDims.y)
@@ -346,7 +346,7 @@ TEST(FloatValues, SumsOfManySlicesAreExact) {
     testing::writeBytes("v_7x7x6000_float32.raw", testing::bytesOf(values));
     RenderOptions options;
     options.mode = Mode::kXray;
-    options.footprintWidth = 1;
+    options.splat.footprintWidth = 1;
     options.camera.view = "front";
     options.camera.sizePixels = {7, 7};
     options.camera.frameWidthWorld = 7;

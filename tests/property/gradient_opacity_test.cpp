@@ -32,7 +32,7 @@ RenderOptions options(double opacity) {
     options.optics.transferFunction.colors = {{200, {0.2, 0.9, 0.4}}, {300, {0.9, 0.5, 0.1}}};
     options.optics.transferFunction.opacities = {{100, 0, 0.5, 0}, {350, opacity, 0.5, 0}};
     options.optics.unitDistance = 1.7;
-    options.resolution = 2;
+    options.splat.resolution = 2;
     options.camera.sizePixels = {64, 64};
     options.camera.direction = glm::dvec3(-0.4, -1, -0.7);
     return options;
@@ -54,7 +54,7 @@ TEST(GradientOpacity, multipliesOpacityOverAUnitDistance) {
         for (const bool isLit : {false, true}) {
             RenderOptions plain = options(0.6 * 0.9);
             RenderOptions faded = options(0.9);
-            plain.between = faded.between = between;
+            plain.splat.between = faded.splat.between = between;
             // Three fifths, which looks can hold, half-way between two points.
             faded.optics.gradientOpacity = {{kGradient - 1, 0.5}, {kGradient + 1, 0.7}};
             const Shading shading;
@@ -98,7 +98,7 @@ TEST(GradientOpacity, isExactUnderATolerance) {
     RenderOptions faded = options(0.9);
     faded.optics.gradientOpacity = {{0, 0.2}, {20, 0.7}};
     RenderOptions tolerant = faded;
-    tolerant.tolerance = {0.3, 0};
+    tolerant.splat.tolerance = {0.3, 0};
     EXPECT_EQ(difference(faded, tolerant), 0);
     EXPECT_EQ(render(evenSlope(), tolerant).stats.errorBoundColor, 0);
 }

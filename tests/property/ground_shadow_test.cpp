@@ -281,7 +281,7 @@ TEST(GroundShadow, isTheSameHoweverItIsMade) {
     Scene scene = someScene();
     EXPECT_GT(sumOf(shadowOf(scene)), 300);
     test::expectTheSameHoweverMade([&](Method method) {
-        scene.options.method = method;
+        scene.options.splat.method = method;
         return shadowOf(scene).rgba;
     });
 }

@@ -43,7 +43,7 @@ void expectSamePixels(const Volume& volume, RenderOptions options) {
     const Image expected = render(volume, options).image;
     EXPECT_GT(mean(expected), 0.02);
     for (const Method method : kMethods) {
-        options.method = method;
+        options.splat.method = method;
         for (const int threads : {1, 2, 3, 8}) {
             if (test::kIsSanitized && threads != 3) continue;
             const ThreadLimit limit(threads);
@@ -76,23 +76,23 @@ TEST(Identity, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
             for (const double resolution : {1.0, 2.0, 3.0, 4.0, 5.0}) {
                 // Large sheets, of which one view has to do.
                 if (resolution > 3 && direction != kDirections[0]) continue;
-                options.resolution = resolution;
+                options.splat.resolution = resolution;
                 expectSamePixels(volume, options);
             }
-            options.resolution = 2;
-            options.sigma = 0.6;
+            options.splat.resolution = 2;
+            options.splat.sigma = 0.6;
             expectSamePixels(volume, options);
-            options.resolution = 1;
+            options.splat.resolution = 1;
             for (const int width : {1, 3}) {
-                options.footprintWidth = width;
+                options.splat.footprintWidth = width;
                 expectSamePixels(volume, options);
             }
-            options.footprintWidth = {};
+            options.splat.footprintWidth = {};
             for (const double sigma : kWideSigmas) {
-                options.sigma = sigma;
+                options.splat.sigma = sigma;
                 expectSamePixels(volume, options);
             }
-            options.footprintWidth = 6;
+            options.splat.footprintWidth = 6;
             expectSamePixels(volume, options);
         }
     }
@@ -104,14 +104,14 @@ TEST(Identity, AlsoOfOneColorAndUnderATolerance) {
         for (const glm::dvec3& direction : kDirections) {
             for (const double resolution : {1.0, 2.0, 3.0}) {
                 RenderOptions options = optionsFor(direction);
-                options.resolution = resolution;
-                options.tolerance = {0.05, 0};
+                options.splat.resolution = resolution;
+                options.splat.tolerance = {0.05, 0};
                 expectSamePixels(volume, options);
-                options.tolerance = {0.1, 12};
+                options.splat.tolerance = {0.1, 12};
                 expectSamePixels(volume, options);
                 options.optics.transferFunction.colors = {{0, {0.5, 0.7, 0.2}}};
                 expectSamePixels(volume, options);
-                options.tolerance = {};
+                options.splat.tolerance = {};
                 expectSamePixels(volume, options);
             }
         }
@@ -136,16 +136,16 @@ TEST(Identity, AlsoOfColorsThatTakeSeveralDigits) {
             for (const bool bright : {false, true}) {
                 makeWide(function, bright);
                 for (const double resolution : {1.0, 2.0, 3.0}) {
-                    options.resolution = resolution;
-                    options.tolerance = {resolution == 2 ? 0.1 : 0.0, 0};
+                    options.splat.resolution = resolution;
+                    options.splat.tolerance = {resolution == 2 ? 0.1 : 0.0, 0};
                     expectSamePixels(volume, options);
                 }
-                options.resolution = 1;
+                options.splat.resolution = 1;
                 for (const double sigma : kWideSigmas) {
-                    options.sigma = sigma;
+                    options.splat.sigma = sigma;
                     expectSamePixels(volume, options);
                 }
-                options.sigma.reset();
+                options.splat.sigma.reset();
             }
             makeWide(function, false);
             function.colors = {{0, {0.5, 0.7, 0.2}}};
@@ -172,16 +172,17 @@ TEST(Identity, AlsoOfLooksThatVoxelsHaveOfTheirOwn) {
                     if (resolution > 3 && direction != kDirections[0]) continue;
                     // What is lit is splatted as what has colours.
                     if (resolution > 1 && !look) continue;
-                    options.resolution = resolution;
-                    options.tolerance = {resolution == 2 ? 0.1 : 0.0, resolution == 3 ? 20.0 : 0.0};
+                    options.splat.resolution = resolution;
+                    options.splat.tolerance = {resolution == 2 ? 0.1 : 0.0,
+                                               resolution == 3 ? 20.0 : 0.0};
                     expectSamePixels(volume, options);
                 }
             }
-            options.resolution.reset();
-            options.between = 1;
-            options.tolerance = {};
+            options.splat.resolution.reset();
+            options.splat.between = 1;
+            options.splat.tolerance = {};
             expectSamePixels(volume, options);
-            options.tolerance = {0.1, 0};
+            options.splat.tolerance = {0.1, 0};
             expectSamePixels(volume, options);
         }
     }
@@ -200,7 +201,7 @@ TEST(Identity, AlsoOfWhatIsSeenInPart) {
                 options.optics.gradientOpacity = {{20, 0.1}, {60, 0.8}};
             }
             for (const int between : {0, 1, 3}) {
-                options.between = between;
+                options.splat.between = between;
                 expectSamePixels(volume, options);
             }
         }
@@ -226,7 +227,7 @@ TEST(Identity, AlsoOfWhatIsLitFromAnEye) {
             options.optics.shading.emplace();
             if (isSurface) options.optics.surface = Surface{120, {0.7, 0.6, 0.5}};
             for (const int between : {0, 1}) {
-                options.between = between;
+                options.splat.between = between;
                 expectSamePixels(volume, options);
             }
         }
@@ -256,20 +257,20 @@ TEST(Identity, AlsoWhereLittleChanges) {
     const Volume volume = solidShapes();
     for (const glm::dvec3& direction : kDirections) {
         RenderOptions options = optionsFor(direction);
-        options.method = Method::kDelta;
-        options.between = 0;
+        options.splat.method = Method::kDelta;
+        options.splat.between = 0;
         const RenderStats stats = render(volume, options).stats;
         EXPECT_LE(stats.slabs, 3);
         EXPECT_LT(6 * stats.deltas, stats.visible);
         for (const double resolution : {1.0, 2.0, 3.0}) {
-            options.resolution = resolution;
+            options.splat.resolution = resolution;
             expectSamePixels(volume, options);
         }
-        options.resolution = 1;
+        options.splat.resolution = 1;
         const auto expectAlsoOfWideFootprints = [&] {
-            options.sigma.reset();
+            options.splat.sigma.reset();
             expectSamePixels(volume, options);
-            options.sigma = kWideSigmas[1];
+            options.splat.sigma = kWideSigmas[1];
             expectSamePixels(volume, options);
         };
         expectAlsoOfWideFootprints();
@@ -291,9 +292,9 @@ TEST(Identity, AlsoWhereMuchIsCovered) {
     for (const glm::dvec3& direction : {glm::dvec3(0.1, 0, -1), glm::dvec3(-0.1, 0.2, 1)}) {
         RenderOptions options = optionsFor(direction);
         options.optics.extinctionScale = 4;
-        options.between = 0;
+        options.splat.between = 0;
         for (const double resolution : {1.0, 2.0}) {
-            options.resolution = resolution;
+            options.splat.resolution = resolution;
             expectSamePixels(volume, options);
         }
         options.optics.shading.emplace();
@@ -310,11 +311,11 @@ TEST(Identity, AlsoOfManyStrips) {
                                                      : test::kInactive;
     });
     RenderOptions options = optionsFor({0.3, 0.4, -1});
-    options.between = 0;
+    options.splat.between = 0;
     const Image expected = render(volume, options).image;
     EXPECT_GT(mean(expected), 0.02);
     for (const Method method : kMethods) {
-        options.method = method;
+        options.splat.method = method;
         for (const int threads : {1, 2, 3}) {
             const ThreadLimit limit(threads);
             EXPECT_EQ(render(volume, options).image.rgba, expected.rgba)
@@ -343,7 +344,7 @@ TEST(Identity, MethodsStampWhatTheySay) {
     const Volume volume = test::randomVolume({{0, 0, 0}, {30, 30, 30}}, 5, 0.5);
     RenderOptions options = optionsFor(kDirections[1]);
     const auto statsOf = [&](Method method) {
-        options.method = method;
+        options.splat.method = method;
         return render(volume, options).stats;
     };
     const RenderStats delta = statsOf(Method::kDelta);
@@ -383,7 +384,7 @@ TEST(Identity, SheetsGoByWhatIsThere) {
     volume.box = {{-(1 << 29), -(1 << 29), 0}, {1 << 29, 1 << 29, 0}};
     for (const int resolution : {1, 8, 16}) {
         RenderOptions options = optionsFor(kDirections[0]);
-        options.resolution = resolution;
+        options.splat.resolution = resolution;
         EXPECT_NO_THROW(render(volume, options)) << resolution;
     }
 }
@@ -393,9 +394,9 @@ TEST(Identity, AlsoWithSlicesBetween) {
         SCOPED_TRACE(between);
         const Volume volume = test::randomVolume(kBoxes[1], 21, 0.5);
         RenderOptions options = optionsFor(kDirections[3]);
-        options.between = between;
+        options.splat.between = between;
         expectSamePixels(volume, options);
-        options.tolerance.relative = 0.1;
+        options.splat.tolerance.relative = 0.1;
         expectSamePixels(volume, options);
     }
 }
@@ -405,8 +406,8 @@ TEST(Identity, AlsoWithVoxelsDivided) {
     for (const glm::dvec3& direction : kDirections) {
         RenderOptions options = optionsFor(direction);
         for (const int resolution : {2, 4}) {
-            options.between = 1;
-            options.resolution = resolution;
+            options.splat.between = 1;
+            options.splat.resolution = resolution;
             expectSamePixels(volume, options);
         }
         makeWide(options.optics.transferFunction, false);

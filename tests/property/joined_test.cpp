@@ -59,7 +59,7 @@ RenderOptions fromEye(Colors colors, double pixelsPerVoxel, const glm::dvec3& di
 }
 
 RenderResult unjoined(const Volume& volume, RenderOptions options) {
-    options.between = 0;
+    options.splat.between = 0;
     RenderResult result = render(volume, options);
     EXPECT_EQ(result.stats.joined, 1);
     return result;
@@ -102,13 +102,13 @@ TEST_F(Joined, sayNoBound) {
     EXPECT_EQ(joined.joined, 2);
     EXPECT_TRUE(std::isinf(joined.errorBoundColor));
     EXPECT_TRUE(std::isinf(joined.errorBoundAlpha));
-    options.between = 0;
+    options.splat.between = 0;
     const RenderStats exact = render(volume, options).stats;
     EXPECT_EQ(exact.joined, 1);
     EXPECT_EQ(exact.errorBoundColor, 0);
     EXPECT_EQ(exact.errorBoundAlpha, 0);
-    options.between = {};
-    options.tolerance.relative = 0.05;
+    options.splat.between = {};
+    options.splat.tolerance.relative = 0.05;
     const RenderStats held = render(volume, options).stats;
     EXPECT_EQ(held.joined, 1);
     EXPECT_FALSE(std::isinf(held.errorBoundColor));
@@ -120,7 +120,7 @@ TEST_F(Joined, joinsUpToEightWhereThatMovesLittle) {
     const Volume volume = test::randomVolume(kBox, 5, 0.5);
     const auto joinedOf = [&](double pixels, const glm::dvec3& direction, int most) {
         RenderOptions options = optionsFor(Colors::kSeveral, pixels, direction);
-        options.mostJoined = most;
+        options.splat.mostJoined = most;
         return render(volume, options).stats.joined;
     };
     EXPECT_EQ(joinedOf(0.5, {0, 0, 1}, 8), 8);
@@ -145,7 +145,7 @@ TEST_F(Joined, joinsUpToEightWhereThatMovesLittle) {
     }
     for (const int none : {0, 3, 5, 64, -2}) EXPECT_THROW(joinedOf(0.2, oblique, none), Error);
     RenderOptions eye = fromEye(Colors::kSeveral, 0.1, kOblique, 20);
-    eye.mostJoined = 8;
+    eye.splat.mostJoined = 8;
     EXPECT_EQ(render(volume, eye).stats.joined, 2);
 }
 
@@ -170,12 +170,12 @@ TEST_F(Joined, joinsTheMoreTheSmallerVoxelsAre) {
                                    {0.0625, 32, 4},
                                    {0.01, 32, 4}}) {
             options = optionsFor(colors, joint.pixels, {0, 0, 1});
-            options.mostJoined = kMostJoined;
+            options.splat.mostJoined = kMostJoined;
             const RenderStats stats = render(volume, options).stats;
             EXPECT_EQ(stats.joined, joint.slices) << joint.pixels;
             EXPECT_EQ(stats.resolution, 1.0 / joint.within) << joint.pixels;
             // Of fewer slices no voxels beside each other become one.
-            options.mostJoined = 8;
+            options.splat.mostJoined = 8;
             EXPECT_EQ(render(volume, options).stats.resolution, 1);
         }
     }
@@ -194,7 +194,7 @@ TEST_F(Joined, keepsThreadsAlongTheLineOfSightAsThin) {
     for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
         for (const double pixels : {0.1875, 0.0625}) {
             RenderOptions options = optionsFor(colors, pixels, {0, 0, 1});
-            options.mostJoined = kMostJoined;
+            options.splat.mostJoined = kMostJoined;
             for (const bool areThreads : {false, true}) {
                 const Volume& volume = areThreads ? threads : plates;
                 const RenderResult joined = render(volume, options);
@@ -233,23 +233,23 @@ TEST_F(Joined, keepsWhatGoesOnAlongLinesOfSightAsDense) {
     for (const double slope : {0.3, 0.497, 0.505, 0.7}) {
         for (const double pixels : {0.45, 0.1}) {
             RenderOptions options = optionsFor(Colors::kOne, pixels, {slope, 0.36, 1});
-            options.mostJoined = kMostJoined;
+            options.splat.mostJoined = kMostJoined;
             expectAsDense(thinRods, options);
             EXPECT_GT(expectAsDense(thickRods, options), 1) << slope;
-            options.mostJoined = 2;
+            options.splat.mostJoined = 2;
             EXPECT_EQ(expectAsDense(thinRods, options), 1) << slope;
         }
     }
     for (const double pixels : {0.45, 0.1}) {
         for (const double slope : {0.25, 0.32, 0.46}) {
             RenderOptions options = optionsFor(Colors::kOne, pixels, {0.214, slope, 1});
-            options.mostJoined = kMostJoined;
+            options.splat.mostJoined = kMostJoined;
             expectAsDense(plates(slope), options);
         }
     }
     RenderOptions edgeOn = optionsFor(Colors::kOne, 0.45, {0.214, 0.32, 1});
     for (const int most : {2, 8, kMostJoined}) {
-        edgeOn.mostJoined = most;
+        edgeOn.splat.mostJoined = most;
         EXPECT_EQ(expectAsDense(plates(0.32), edgeOn), 1) << most;
     }
     // Seen straight, slices are where they are.
@@ -312,7 +312,7 @@ TEST_F(Joined, showsNoStepsInWhatIsEven) {
     RenderOptions options = optionsFor(Colors::kSeveral, 0.4, {0, 0, 1});
     options.camera.sizePixels = {60, 30};
     options.camera.frameWidthWorld = 150;
-    options.mostJoined = 8;
+    options.splat.mostJoined = 8;
     for (const double extinction : {0.3, 0.05, 0.005}) {
         options.optics.extinctionScale = extinction;
         const RenderResult joined = render(volume, options);
@@ -331,12 +331,12 @@ TEST_F(Joined, joinsAnyNumberOfClasses) {
     for (auto& point : options.optics.transferFunction.colors) point.x *= 30;
     const RenderResult expected = unjoined(volume, options);
     for (const int most : {4, 8}) {
-        options.mostJoined = most;
+        options.splat.mostJoined = most;
         const RenderResult joined = render(volume, options);
         EXPECT_GE(joined.stats.joined, 2);
         EXPECT_NEAR(sumOf(joined.image) / sumOf(expected.image), 1, 0.01);
     }
-    options.mostJoined = 2;
+    options.splat.mostJoined = 2;
     EXPECT_EQ(render(volume, options).stats.joined, 1);
 }
 
@@ -350,7 +350,7 @@ TEST_F(Joined, notWhereLittleIsSaved) {
     // Nor more than two of several colours, but in a large volume.
     for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
         RenderOptions many = optionsFor(colors, 0.3, {0, 0, 1});
-        many.mostJoined = 8;
+        many.splat.mostJoined = 8;
         leastVoxelsJoined = volume.activeCount / 32 + 1;
         EXPECT_EQ(render(volume, many).stats.joined, colors == Colors::kOne ? 8 : 2);
         leastVoxelsJoined = volume.activeCount / 32;
@@ -362,7 +362,7 @@ TEST_F(Joined, notWhereLittleIsSaved) {
 TEST_F(Joined, oneColorIsWhatAllPointsHave) {
     const Volume volume = test::randomVolume(kBox, 5, 0.5);
     RenderOptions options = optionsFor(Colors::kOne, 0.3, {0, 0, 1});
-    options.mostJoined = 8;
+    options.splat.mostJoined = 8;
     leastVoxelsJoined = volume.activeCount;
     const RenderResult expected = render(volume, options);
     EXPECT_EQ(expected.stats.joined, 8);
@@ -382,13 +382,13 @@ TEST_F(Joined, notWhereVoxelsAreAskedFor) {
     const Volume volume = test::randomVolume(kBox, 5, 0.5);
     const RenderOptions plain = optionsFor(Colors::kSeveral, 0.3, kOblique);
     std::vector<RenderOptions> all(7, plain);
-    all[0].between = 0;
-    all[1].resolution = 1;
-    all[2].sigma = 0.5;
-    all[3].tolerance.relative = 0.01;
-    all[4].tolerance.value = 1;
-    all[5].footprintWidth = 1;
-    all[6].mostJoined = 1;
+    all[0].splat.between = 0;
+    all[1].splat.resolution = 1;
+    all[2].splat.sigma = 0.5;
+    all[3].splat.tolerance.relative = 0.01;
+    all[4].splat.tolerance.value = 1;
+    all[5].splat.footprintWidth = 1;
+    all[6].splat.mostJoined = 1;
     EXPECT_EQ(render(volume, plain).stats.joined, 2);
     for (const RenderOptions& options : all) EXPECT_EQ(render(volume, options).stats.joined, 1);
     DeepImage deep;
@@ -445,10 +445,10 @@ TEST_F(Joined, notFromAnEyeWhereVoxelsAreAskedFor) {
     const Volume volume = test::randomVolume(kBox, 5, 0.5);
     const RenderOptions plain = fromEye(Colors::kSeveral, 0.2, kOblique, 30);
     std::vector<RenderOptions> all(4, plain);
-    all[0].between = 0;
-    all[1].resolution = 1;
-    all[2].tolerance.relative = 0.01;
-    all[3].mostJoined = 1;
+    all[0].splat.between = 0;
+    all[1].splat.resolution = 1;
+    all[2].splat.tolerance.relative = 0.01;
+    all[3].splat.mostJoined = 1;
     EXPECT_EQ(render(volume, plain).stats.joined, 2);
     for (const RenderOptions& options : all) EXPECT_EQ(render(volume, options).stats.joined, 1);
     DeepImage deep;
@@ -486,14 +486,14 @@ TEST_F(Joined, straightViewsShowTheSame) {
                     EXPECT_LT(joined.stats.visible, expected.stats.visible);
                     EXPECT_LT(largestDifference(joined.image, expected.image), 4e-4)
                         << axis << ", " << sign;
-                    options.mostJoined = 8;
+                    options.splat.mostJoined = 8;
                     const RenderResult eight = render(volume, options);
                     EXPECT_EQ(eight.stats.joined, 8);
                     // Looks are rounded.
                     EXPECT_LT(largestDifference(eight.image, expected.image), 4e-3)
                         << axis << ", " << sign;
                     if (pixels > 0.125) continue;
-                    options.mostJoined = kMostJoined;
+                    options.splat.mostJoined = kMostJoined;
                     const RenderResult most = render(volume, options);
                     EXPECT_GE(most.stats.joined, 16);
                     // Squares of noise are a little denser.
@@ -545,7 +545,7 @@ TEST_F(Joined, movesNothingByMoreThanAFifthOfAPixel) {
         for (const glm::dvec3& direction : kDirections) {
             // Voxels of both kinds are no wider than one world unit in most slices.
             RenderOptions options = optionsFor(Colors::kOne, 0.5, direction);
-            options.filter = PictureFilter::kGauss;
+            options.splat.filter = PictureFilter::kGauss;
             options.camera.sizePixels = {120, 120};
             options.camera.frameWidthWorld = 240;
             for (const RenderOptions& one : {options, fromEye(options, 40)}) {
@@ -598,7 +598,7 @@ PlateSums sumsOfPlates(int axis, bool isOne, double opacity, const glm::dvec3& d
     options.camera.sizePixels = {60, 60};
     if (isFromEye) options = fromEye(options, 25);
     options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {255, opacity, 0.5, 0}};
-    options.mostJoined = mostJoined;
+    options.splat.mostJoined = mostJoined;
     const RenderResult joined = render(plates, options);
     return {sumOf(unjoined(plates, options).image), sumOf(joined.image)};
 }
@@ -613,10 +613,10 @@ TEST_F(Joined, movesNothingOfEightSlicesByMoreThanAQuarterOfAPixel) {
         for (const glm::dvec3& direction : kDirections) {
             for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
                 RenderOptions options = optionsFor(colors, 0.4, direction);
-                options.filter = PictureFilter::kGauss;
+                options.splat.filter = PictureFilter::kGauss;
                 options.camera.sizePixels = {120, 120};
                 options.camera.frameWidthWorld = 300;
-                options.mostJoined = 8;
+                options.splat.mostJoined = 8;
                 const RenderResult joined = render(volume, options);
                 if (joined.stats.joined == 2) continue;
                 const Middle now = middleOf(joined.image);
@@ -750,7 +750,7 @@ RenderOptions ofSquares(Colors colors, int within, const glm::dvec3& direction) 
     options.camera.sizePixels = {24, 24};
     options.camera.frameWidthWorld = within == 2 ? 24 / 0.18 : 24 / 0.06;
     options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {255, 0.04, 0.5, 0}};
-    options.mostJoined = kMostJoined;
+    options.splat.mostJoined = kMostJoined;
     return options;
 }
 
@@ -762,7 +762,7 @@ TEST_F(Joined, squaresAreDrawnInTheirMiddle) {
         for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
             for (const glm::dvec3& direction : kDirections) {
                 RenderOptions options = ofSquares(colors, within, direction);
-                options.filter = PictureFilter::kGauss;
+                options.splat.filter = PictureFilter::kGauss;
                 const RenderResult squares = render(ball, options);
                 // Not where lines of sight pass on by fewer voxels than become one.
                 if (squares.stats.resolution == 1) continue;
@@ -800,7 +800,7 @@ TEST_F(Joined, MethodsThreadsAndSimdLevelsGiveTheSamePixels) {
                 RenderOptions options = optionsFor(colors, pixels, direction);
                 EXPECT_EQ(render(volume, options).stats.joined, 2);
                 test::expectTheSameHoweverItIsMade(volume, options);
-                options.mostJoined = pixels < 0.1 ? kMostJoined : 8;
+                options.splat.mostJoined = pixels < 0.1 ? kMostJoined : 8;
                 joined += render(volume, options).stats.joined;
                 test::expectTheSameHoweverItIsMade(volume, options);
             }
@@ -823,8 +823,8 @@ TEST_F(Joined, preparedScenesShowTheSame) {
         for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
             for (const double pixels : {0.3, 0.05}) {
                 RenderOptions options = optionsFor(colors, pixels, kOblique);
-                options.method = method;
-                options.mostJoined = pixels < 0.1 ? kMostJoined : 2;
+                options.splat.method = method;
+                options.splat.mostJoined = pixels < 0.1 ? kMostJoined : 2;
                 Optics recolored = options.optics;
                 recolored.transferFunction.colors[0].rgb = {0.3, 0.6, 0};
                 Optics thinner = recolored;
@@ -833,7 +833,7 @@ TEST_F(Joined, preparedScenesShowTheSame) {
                 other.transferFunction.opacities[1].opacity = 0.1;
                 Optics fewer = other;
                 fewer.transferFunction.opacities[0].x = 100;
-                PreparedScene scene({volume, options.optics}, options);
+                PreparedScene scene({volume, options.optics}, options.splat);
                 for (const Optics& optics :
                      {options.optics, recolored, thinner, other, fewer, options.optics}) {
                     scene = scene.withOptics(optics);
@@ -842,9 +842,9 @@ TEST_F(Joined, preparedScenesShowTheSame) {
                         one.optics = optics;
                         one.camera.direction = sign * kOblique;
                         const RenderResult expected = render(*volume, one);
-                        EXPECT_EQ(expected.stats.joined, options.mostJoined);
+                        EXPECT_EQ(expected.stats.joined, options.splat.mostJoined);
                         Image image(expected.camera.sizePixels);
-                        renderComposite(scene, expected.camera, image);
+                        scene.render(expected.camera, image);
                         EXPECT_EQ(image.rgba, expected.image.rgba) << sign;
                     }
                 }
@@ -858,7 +858,7 @@ TEST_F(Joined, preparedScenesShowTheSameFromWhereverTheyAreSeen) {
     const auto volume =
         std::make_shared<const Volume>(test::randomVolume(kBox, 9, 0.5, {1, 1.2, 0.8}));
     RenderOptions options = fromEye(Colors::kSeveral, 0.12, kOblique, 40);
-    const PreparedScene scene({volume, options.optics}, options);
+    const PreparedScene scene({volume, options.optics}, options.splat);
     Optics thinner = options.optics;
     thinner.extinctionScale = 0.3;
     const PreparedScene other = scene.withOptics(thinner);
@@ -870,11 +870,11 @@ TEST_F(Joined, preparedScenesShowTheSameFromWhereverTheyAreSeen) {
         const RenderResult expected = render(*volume, options);
         EXPECT_EQ(expected.stats.joined, 2);
         Image image(expected.camera.sizePixels);
-        renderComposite(scene, expected.camera, image);
+        scene.render(expected.camera, image);
         EXPECT_EQ(image.rgba, expected.image.rgba) << i;
         RenderOptions thin = options;
         thin.optics = thinner;
-        renderComposite(other, expected.camera, image);
+        other.render(expected.camera, image);
         EXPECT_EQ(image.rgba, render(*volume, thin).image.rgba) << i;
     }
 }

@@ -208,7 +208,7 @@ TEST(SurfaceOutline, IsThatOfTheBall) {
                 for (const int between : {0, 1, 3}) {
                     RenderOptions options = surfaceFrom(direction);
                     options.camera.sizePixels = {pixels, pixels};
-                    options.between = between;
+                    options.splat.between = between;
                     const double got = coveredRadius(render(volume, options).image);
                     EXPECT_NEAR(got, radius, radius > 5 || between > 0 ? 0.07 : 0.12)
                         << direction.x << " " << pixels << " between " << between;
@@ -226,7 +226,7 @@ TEST(SurfaceOutline, IsNotLitFromBehind) {
         for (const glm::dvec3& direction : kDirections) {
             for (const int between : {0, 1}) {
                 RenderOptions options = surfaceFrom(direction);
-                options.between = between;
+                options.splat.between = between;
                 Shading& shading = options.optics.shading.emplace();
                 shading.lights = {Light{LightFrame::kView, travels}};
                 const Image image = render(volume, options).image;

@@ -420,15 +420,15 @@ TEST(Perspective, methodsThreadsAndSimdLevelsGiveTheSamePixels) {
             function.opacities = {
                 {40, 0, 0.5, 0}, {60, 1e-6, 0.5, 0}, {200, 0.1, 0.5, 0}, {255, 1, 0.5, 0}};
             for (const int between : {0, 1}) {
-                options.between = between;
-                options.method = Method::kAuto;
+                options.splat.between = between;
+                options.splat.method = Method::kAuto;
                 const Image expected = render(volume, options).image;
                 double sum = 0;
                 for (const float value : expected.rgba) sum += value;
                 EXPECT_GT(sum / double(expected.rgba.size()), 0.02);
                 for (const Method method :
                      {Method::kDelta, Method::kSparse, Method::kTraditional, Method::kAuto}) {
-                    options.method = method;
+                    options.splat.method = method;
                     for (const int threads : {1, 3, 8}) {
                         const ThreadLimit limit(threads);
                         EXPECT_EQ(render(volume, options).image.rgba, expected.rgba)
@@ -501,7 +501,7 @@ TEST(Perspective, whatToleranceCostsIsBounded) {
         options.camera = camera;
         const Image exact = render(volume, options).image;
         for (const double tolerance : {0.02, 0.2}) {
-            options.tolerance.relative = tolerance;
+            options.splat.tolerance.relative = tolerance;
             const RenderResult held = render(volume, options);
             double color = 0, alpha = 0;
             for (std::size_t i = 0; i < exact.rgba.size(); ++i) {
@@ -578,9 +578,9 @@ TEST(Perspective, farSlicesDoNotAlias) {
     options.camera.eyeWorld = glm::dvec3(150, 25, -30);
     options.camera.targetWorld = glm::dvec3(150, 0, 50);
     // Both pictures of the same sheets.
-    options.between = 0;
+    options.splat.between = 0;
     for (const int resolution : {1, 2}) {
-        options.resolution = resolution;
+        options.splat.resolution = resolution;
         options.camera.sizePixels = {160, 120};
         const Image once = render(volume, options).image;
         options.camera.sizePixels = {640, 480};

@@ -75,8 +75,8 @@ void expectCornersInPlace(const TestVolume& corners, const Volume& volume, const
     options.camera.sizePixels = {165, 135};
     const double pixelWorld = 0.2 * volume.voxelSize().x;
     options.camera.frameWidthWorld = pixelWorld * options.camera.sizePixels.x;
-    options.sigma = 0.2;
-    options.resolution = 4;
+    options.splat.sigma = 0.2;
+    options.splat.resolution = 4;
     TransferFunction& function = options.optics.transferFunction;
     function.linearColors = true;
     for (int corner = 0; corner < 8; ++corner) {
@@ -159,7 +159,7 @@ TEST(Placement, aPictureDoesNotDependOnHowALargeFrameIsCut) {
     RenderOptions options;
     options.optics.transferFunction = testTransferFunction(0.4);
     options.camera = view.options();
-    options.resolution = 2;
+    options.splat.resolution = 2;
     const Image whole = render(read, options).image;
     const reference::View axes = view.view();
     view.target += 24 * view.pixelWorld * glm::dvec3(axes.right[0], axes.right[1], axes.right[2]);
@@ -200,8 +200,8 @@ TEST(Placement, oneVoxelKeepsAllItsLight) {
         options.camera = view.options();
         options.optics.transferFunction = testTransferFunction(opacity);
         options.optics.unitDistance = 1.25;
-        options.sigma = 0.8;
-        options.resolution = 8;
+        options.splat.sigma = 0.8;
+        options.splat.resolution = 8;
         const RenderResult result = render(read, options);
         ASSERT_EQ(result.stats.sliceAxis, c.sliceAxis);
 

@@ -14,9 +14,7 @@
 #include "deltasplat/prepared_scene.h"
 #include "deltasplat/render.h"
 #include "deltasplat/threads.h"
-#include "picture/picture_view.h"
-#include "picture/prepared_axis.h"
-#include "picture/sheet_plan.h"
+#include "picture/render_views.h"
 #include "support/error_of.h"
 #include "support/make_volume.h"
 #include "support/small_joined.h"
@@ -41,8 +39,8 @@ TEST(Prepared, givesThePixelsOfRender) {
         for (const double tolerance : {0.0, 0.1}) {
             RenderOptions options;
             options.optics = someOptics(colors);
-            options.tolerance.relative = tolerance;
-            const PreparedScene scene({someVolume(), options.optics}, options);
+            options.splat.tolerance.relative = tolerance;
+            const PreparedScene scene({someVolume(), options.optics}, options.splat);
             for (int round = 0; round < 2; ++round) {
                 for (const CameraOptions& camera : smallCamerasToo()) {
                     options.camera = camera;
@@ -75,15 +73,15 @@ TEST(Prepared, picturesOfWhatIsSeenAreThoseOfAll) {
         // Inside, beside, and in front of the near plane.
         if (i % 3 == 1) camera.eyeWorld = {7.0 * (i % 5), 50 + i, 3.0 * (i % 7)};
         if (i % 5 == 2) camera.nearWorld = 20;
-        if (i % 6 == 1) options.resolution = 1;
-        if (i % 6 == 2) options.resolution = 2;
-        if (i % 6 == 3 && i % 8 != 3) options.between = 1;
-        if (i % 6 == 4) options.sigma = 1.5;
-        if (i % 6 == 5) options.footprintWidth = 9;
-        const PreparedScene scene({volume, options.optics}, options);
+        if (i % 6 == 1) options.splat.resolution = 1;
+        if (i % 6 == 2) options.splat.resolution = 2;
+        if (i % 6 == 3 && i % 8 != 3) options.splat.between = 1;
+        if (i % 6 == 4) options.splat.sigma = 1.5;
+        if (i % 6 == 5) options.splat.footprintWidth = 9;
+        const PreparedScene scene({volume, options.optics}, options.splat);
         const RenderResult one = render(*volume, options);
         Image image(one.camera.sizePixels);
-        const RenderStats stats = renderComposite(scene, one.camera, image);
+        const RenderStats stats = scene.render(one.camera, image);
         EXPECT_EQ(image.rgba, one.image.rgba) << i;
         EXPECT_LE(one.stats.visible, stats.visible);
         seen += one.stats.visible;
@@ -102,18 +100,17 @@ TEST(Prepared, picturesInPartsAreThoseOfAllAtOnce) {
             options.optics.transferFunction.opacities[0].opacity = least;
             for (const Method method :
                  {Method::kAuto, Method::kDelta, Method::kSparse, Method::kTraditional}) {
-                options.method = method;
+                options.splat.method = method;
                 for (std::size_t i = 0; i < smallCamerasToo().size(); ++i) {
                     options.camera = smallCamerasToo()[i];
-                    options.mostJoined = i / 2 % 2 == 0 ? 2 : kMostJoined;
+                    options.splat.mostJoined = i / 2 % 2 == 0 ? 2 : kMostJoined;
                     const ThreadLimit limit(1 + int(i % 3));
                     const RenderResult whole = render(*someVolume(), options);
-                    PreparedScene::Impl scene({someVolume(), options.optics}, options, true);
+                    PreparedScene::Impl scene({someVolume(), options.optics}, options.splat, true);
                     scene.wordBytes = i % 2 == 0 ? 0 : 4e5;
                     KeptMemory memory;
                     Image image(whole.camera.sizePixels);
-                    const RenderStats stats =
-                        renderComposite(scene, whole.camera, memory, image, {});
+                    const RenderStats stats = renderImage(scene, whole.camera, memory, image, {});
                     EXPECT_EQ(image.rgba, whole.image.rgba) << int(colors) << ' ' << i;
                     EXPECT_EQ(stats.visible, whole.stats.visible);
                     EXPECT_EQ(stats.deltas, whole.stats.deltas);
@@ -134,10 +131,11 @@ std::shared_ptr<const PreparedAxis> axisOf(const PreparedScene& scene, int axis,
     options.direction = glm::dvec3(0);
     (*options.direction)[axis] = away;
     const Camera camera = cameraOf(volume, options);
-    const ViewPlan plan(scene.impl(), camera, false, listener);
-    const Factorization& view = plan.views.front();
-    EXPECT_EQ(view.sliceAxis, axis);
-    return scene.impl().axis(view, plan.sheets, listener, nullptr);
+    const DrawPlan plan = planPicture(scene.impl(), camera, DrawnFor::kSlabs, listener);
+    AxisPlan all = plan.views.front().axis;
+    all.seen.reset();
+    EXPECT_EQ(all.key.sliceAxis, axis);
+    return scene.impl().axis(all, listener);
 }
 
 // A camera that turns needs each axis once, whatever the angle.
@@ -179,8 +177,8 @@ std::vector<Optics> otherOptics() {
 TEST(Prepared, otherOpticsGiveThePixelsOfRender) {
     for (const double tolerance : {0.0, 0.1}) {
         RenderOptions options;
-        options.tolerance.relative = tolerance;
-        PreparedScene scene({someVolume(), someOptics(Colors::kSeveral)}, options);
+        options.splat.tolerance.relative = tolerance;
+        PreparedScene scene({someVolume(), someOptics(Colors::kSeveral)}, options.splat);
         for (const CameraOptions& camera : {smallCamerasToo()[1], smallCamerasToo()[6]}) {
             options.camera = camera;
             for (const Optics& optics : otherOptics()) {
@@ -253,10 +251,10 @@ TEST(Prepared, dividedVoxelsAreThoseOfTheirOptics) {
         return optics;
     };
     RenderOptions options;
-    options.between = 1;
+    options.splat.between = 1;
     options.camera.sizePixels = {45, 45};
     options.optics = opticsOf(0.6);
-    PreparedScene scene({volume, options.optics}, options);
+    PreparedScene scene({volume, options.optics}, options.splat);
     pictureOf(scene, options.camera);
     for (const double haze : {0.01, 0.55, 1e-6}) {
         options.optics = opticsOf(haze);
@@ -273,7 +271,7 @@ TEST(Prepared, wordsThatWerePaintedAreNotShared) {
     options.camera = smallCamerasToo()[1];
     Optics faded = options.optics;
     faded.gradientOpacity = {{0, 0}};
-    const PreparedScene scene({someVolume(), faded}, options);
+    const PreparedScene scene({someVolume(), faded}, options.splat);
     const Image clear = pictureOf(scene, options.camera);
     const Image seen = pictureOf(scene.withOptics(options.optics), options.camera);
     EXPECT_NE(seen.rgba, clear.rgba);
@@ -320,13 +318,12 @@ TEST(Prepared, showsAsMuchAsRenderOfWhatIsHardlyThere) {
 }
 
 // Nor does what memory held before, and who else uses it.
-TEST(Prepared, renderersKeepMemoryAndNothingElse) {
+TEST(Prepared, scenesKeepMemoryAndNothingElse) {
     const test::SmallJoined joined;
-    Renderer renderer;
-    for (int round = 0; round < 2; ++round) {
-        for (const Colors colors : {Colors::kSeveral, Colors::kOwn, Colors::kFog, Colors::kFire,
-                                    Colors::kLit, Colors::kOne}) {
-            const PreparedScene scene({someVolume(), someOptics(colors)}, SplatOptions());
+    for (const Colors colors : {Colors::kSeveral, Colors::kOwn, Colors::kFog, Colors::kFire,
+                                Colors::kLit, Colors::kOne}) {
+        const PreparedScene scene({someVolume(), someOptics(colors)}, SplatOptions());
+        for (int round = 0; round < 2; ++round) {
             const std::vector<CameraOptions> cameras = smallCamerasToo();
             std::vector<Image> pictures(cameras.size());
             std::vector<std::thread> threads;
@@ -334,12 +331,14 @@ TEST(Prepared, renderersKeepMemoryAndNothingElse) {
                 threads.emplace_back([&, i] {
                     const Camera camera = cameraOf(*scene.scene().volume, cameras[i]);
                     pictures[i] = Image(camera.sizePixels);
-                    renderer.render(scene, camera, pictures[i]);
+                    scene.render(camera, pictures[i]);
                 });
             }
             for (std::thread& thread : threads) thread.join();
             for (std::size_t i = 0; i < cameras.size(); ++i)
-                EXPECT_EQ(pictures[i].rgba, pictureOf(scene, cameras[i]).rgba) << i;
+                EXPECT_EQ(pictures[i].rgba,
+                          pictureOf(PreparedScene(scene.scene(), {}), cameras[i]).rgba)
+                    << i;
         }
     }
 }
@@ -363,7 +362,7 @@ TEST(Prepared, picturesAreCleared) {
             const Camera camera = cameraOf(*seen.volume, options);
             Image image(camera.sizePixels);
             std::fill(image.rgba.begin(), image.rgba.end(), 7.0f);
-            renderComposite(scene, camera, image);
+            scene.render(camera, image);
             EXPECT_EQ(image.rgba, pictureOf(scene, options).rgba);
         }
     }
@@ -381,7 +380,7 @@ TEST(Prepared, refusesWhatCannotBeMeant) {
     const PreparedScene scene({someVolume(), someOptics(Colors::kOne)}, SplatOptions());
     const Camera camera = cameraOf(*scene.scene().volume, CameraOptions());
     Image small({100, 512});
-    EXPECT_EQ(errorOf([&] { renderComposite(scene, camera, small); }),
+    EXPECT_EQ(errorOf([&] { scene.render(camera, small); }),
               "usage: image: got 100x512 pixels, 204800 values; expected the camera's 512x512, "
               "four values "
               "each");

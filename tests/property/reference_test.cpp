@@ -110,8 +110,8 @@ RenderResult renderTest(const Volume& volume, const TestView& view, double sigma
     RenderOptions options;
     options.camera = view.options();
     options.optics.transferFunction = testTransferFunction(kOpacity);
-    options.sigma = sigma;
-    options.resolution = resolution;
+    options.splat.sigma = sigma;
+    options.splat.resolution = resolution;
     return render(volume, options);
 }
 

@@ -535,7 +535,7 @@ TEST(Scattering, refusesWhatCannotBe) {
               "usage: `scattering`: got `colorBy` x besides; expected `colorBy` value");
     EXPECT_EQ(errorWith([](auto& o) { o.optics.scattering->ambient.y = -1; }),
               "usage: `scattering.ambient`: got -1; expected a number within 0..1e6");
-    EXPECT_EQ(errorWith([](auto& o) { o.between = 1; }),
+    EXPECT_EQ(errorWith([](auto& o) { o.splat.between = 1; }),
               "usage: `between`: got 1 with `scattering`; expected 0: lit fog and media of several "
               "grids are drawn by whole voxels");
 }

@@ -155,8 +155,8 @@ TEST(Shading, agreesWithTheReference) {
         options.camera = view.options();
         options.optics.transferFunction = testTransferFunction(kOpacity);
         options.optics.shading = someShading();
-        options.sigma = 0.4;
-        options.resolution = 2;
+        options.splat.sigma = 0.4;
+        options.splat.resolution = 2;
         const RenderResult result = render(read, options);
         const auto expected = reference::renderSampled(
             litVolume(volume, someShading(), noiseOf(read), eye), plain, 0.4, 2);
@@ -202,7 +202,7 @@ TEST(Shading, ofABallIsTheClosedForm) {
         }
         Shading& shading = *options.optics.shading;
         shading = someShading();
-        options.between = 3;
+        options.splat.between = 3;
         const RenderResult result = render(volume, options);
         const Camera& camera = result.camera;
         double squares = 0;
@@ -293,7 +293,7 @@ TEST(Shading, mirrorsWithTheScene) {
         options.camera.sizePixels = {64, 64};
         options.camera.direction = glm::dvec3(-0.3, -0.4, -1);
         options.camera.targetWorld = glm::dvec3(15, 14, 11);
-        options.between = between;
+        options.splat.between = between;
         const Image image = render(volume, options).image;
         volume.worldFromIndex[0] = -volume.worldFromIndex[0];
         options.camera.direction->x = -options.camera.direction->x;
@@ -341,7 +341,7 @@ TEST(Shading, isExactUnderATolerance) {
     options.optics.shading = someShading();
     options.camera.sizePixels = {64, 64};
     const Image exact = render(volume, options).image;
-    options.tolerance = {0.3, 0};
+    options.splat.tolerance = {0.3, 0};
     const RenderResult result = render(volume, options);
     EXPECT_EQ(result.image.rgba, exact.rgba);
     EXPECT_EQ(result.stats.errorBoundColor, 0);

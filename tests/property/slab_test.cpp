@@ -39,7 +39,7 @@ void expectSlab(const TestVolume& slab, const Volume& volume, double degrees,
     view.pixelWorld = slab.worldFromIndex[0][0] / 4;
     RenderOptions options;
     options.camera = view.options();
-    options.resolution = resolution;
+    options.splat.resolution = resolution;
     options.optics.transferFunction = testTransferFunction(kOpacity);
     options.optics.unitDistance = unitDistance;
 

@@ -89,7 +89,7 @@ TEST(Surface, ofABallIsTheClosedForm) {
         for (const int between : {0, 1}) {
             RenderOptions options = surfaceAt(kSurface);
             options.camera.direction = direction;
-            options.between = between;
+            options.splat.between = between;
             const double agrees = agreement(render(volume, options), kRadius, options.optics);
             EXPECT_GT(agrees, between == 0 ? 39 : 45) << direction.x << " between " << between;
         }
@@ -109,7 +109,7 @@ TEST(Surface, ofABallOfOblongVoxelsIsTheClosedForm) {
         const Volume volume = ball(kRadius, spacing);
         RenderOptions options = surfaceAt(kSurface);
         options.camera.direction = glm::dvec3(-1, -0.7, -0.4);
-        options.between = 1;
+        options.splat.between = 1;
         EXPECT_GT(agreement(render(volume, options), kRadius, options.optics),
                   spacing.z > 4 ? 24 : 36)
             << spacing.z;
@@ -140,7 +140,7 @@ TEST(Surface, ofALevelSetIsThatOfItsDistances) {
     EXPECT_TRUE(isLevelSet(volume));
     RenderOptions options = surfaceAt(0);
     options.camera.direction = glm::dvec3(-1, -0.7, -0.4);
-    options.between = 1;
+    options.splat.between = 1;
     EXPECT_GT(agreement(render(volume, options), kRadius, options.optics), 44);
     // Of another distance.
     options.optics.surface->isovalue = -1;
@@ -153,7 +153,7 @@ TEST(Surface, ofSparseValuesIsThatOfDenseOnes) {
     options.camera.view = "iso";
     const glm::dvec3 spacing(1, 1.3, 0.8);
     for (const int between : {0, 1}) {
-        options.between = between;
+        options.splat.between = between;
         const Image dense = render(ball(20, spacing), options).image;
         const Image sparse = render(ball(20, spacing, true), options).image;
         EXPECT_EQ(dense.rgba, sparse.rgba);
@@ -169,7 +169,7 @@ TEST(Surface, isCutAsItsVoxelsAre) {
             options.camera.view = "right";
             options.camera.targetWorld = glm::dvec3(0);
             options.camera.frameWidthWorld = 60;
-            options.between = between;
+            options.splat.between = between;
             const Image image = render(whole, options).image;
             const auto cutAt = [&](double y) {
                 Cut cut;
@@ -193,7 +193,7 @@ TEST(Surface, endsWhereABackgroundInsideBegins) {
     Volume volume = ball(12, glm::dvec3(1), true);
     volume.background = 3000;
     RenderOptions options = surfaceAt(kSurface);
-    options.between = 0;
+    options.splat.between = 0;
     EXPECT_LE(render(volume, options).stats.visible, volume.activeCount);
 }
 
@@ -218,7 +218,7 @@ TEST(Surface, mirrorsWithTheScene) {
         options.camera.sizePixels = {64, 64};
         options.camera.direction = glm::dvec3(-0.3, -0.4, -1);
         options.camera.targetWorld = glm::dvec3(15, 14, 11);
-        options.between = between;
+        options.splat.between = between;
         const Image image = render(volume, options).image;
         volume.worldFromIndex[0] = -volume.worldFromIndex[0];
         options.camera.direction->x = -options.camera.direction->x;
@@ -234,7 +234,7 @@ TEST(Surface, isOpaqueAndExact) {
     const Volume volume = ball(12);
     RenderOptions options = surfaceAt(kSurface);
     const Image image = render(volume, options).image;
-    options.tolerance = {0.3, 0};
+    options.splat.tolerance = {0.3, 0};
     options.optics.extinctionScale = 0.01;
     options.optics.unitDistance = 100;
     const RenderResult result = render(volume, options);
@@ -257,7 +257,7 @@ TEST(Surface, nothingInsideVanishes) {
         for (const std::optional<int> between : {std::optional<int>(), std::optional(3)}) {
             SCOPED_TRACE(std::to_string(size) + " " + std::to_string(between.value_or(-1)));
             options.camera.sizePixels = {size, size};
-            options.between = between;
+            options.splat.between = between;
             const Image image = render(volume, options).image;
             // From the front z goes up.
             const auto alphaAt = [&](double x, double z) {
@@ -274,7 +274,7 @@ TEST(Surface, nothingInsideVanishes) {
         return (y == 3 && z == 3) || (x == 4 && y == 11 && z == 11) ? 255 : 0;
     });
     options.camera.sizePixels = {60, 60};
-    options.between.reset();
+    options.splat.between.reset();
     const Image image = render(thin, options).image;
     EXPECT_GT(image.pixel(30, 46)[3], 0.6);
     EXPECT_GT(image.pixel(18, 14)[3], 0.5);

@@ -126,7 +126,7 @@ void expectBlocks(const std::vector<TestLook>& looks) {
     const Volume volume = blocks(int(looks.size()));
     RenderOptions options = optionsOf(looks, {16 * int(looks.size()) - 4, 12});
     for (const int resolution : {1, 2, 3}) {
-        options.resolution = resolution;
+        options.splat.resolution = resolution;
         const Image image = render(volume, options).image;
         for (int i = 0; i < int(looks.size()); ++i) {
             const double alpha = opacityOf(looks[i].opacity, kDepth);

@@ -55,7 +55,7 @@ TEST(ToleranceBound, HoldsOnRandomVolumes) {
                     const RenderResult exact = render(volume, options);
                     EXPECT_EQ(exact.stats.errorBoundColor, 0);
                     for (const double t : {0.01, 0.1, 0.3}) {
-                        options.tolerance.relative = t;
+                        options.splat.tolerance.relative = t;
                         const RenderResult held = render(volume, options);
                         const Difference difference = largestDifference(held.image, exact.image);
                         const RenderStats& stats = held.stats;
@@ -86,9 +86,9 @@ TEST(ToleranceBound, IsReachedByOneSlice) {
     RenderOptions options = optionsOf({0, 0, -1}, true, 1);
     options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {200, 0.2, 0.5, 0}};
     options.camera.sizePixels = {32, 32};
-    options.between = 0;
+    options.splat.between = 0;
     const RenderResult exact = render(volume, options);
-    options.tolerance.relative = 0.11;
+    options.splat.tolerance.relative = 0.11;
     const RenderResult held = render(volume, options);
     // Two slices of opacity 0.11 instead of 0.11 and 0.1: in the middle, away from what the warp's
     // filter does to edges.
@@ -103,13 +103,13 @@ TEST(ToleranceBound, IsUnknownForATolerancesOfValuesAlone) {
     const Volume volume = test::randomVolume({{0, 0, 0}, {20, 20, 20}}, 9);
     RenderOptions options = optionsOf({0, 0, -1}, false, 0.4);
     const RenderStats exact = render(volume, options).stats;
-    options.tolerance.value = 30;
+    options.splat.tolerance.value = 30;
     const RenderStats byValue = render(volume, options).stats;
     EXPECT_TRUE(std::isinf(byValue.errorBoundColor));
     EXPECT_TRUE(std::isinf(byValue.errorBoundAlpha));
     EXPECT_LT(byValue.deltas, exact.deltas);
     // Both together: neither may be exceeded.
-    options.tolerance.relative = 0.05;
+    options.splat.tolerance.relative = 0.05;
     const RenderStats both = render(volume, options).stats;
     EXPECT_FALSE(std::isinf(both.errorBoundAlpha));
     EXPECT_GE(both.deltas, byValue.deltas);
@@ -119,11 +119,11 @@ TEST(ToleranceBound, IsUnknownForATolerancesOfValuesAlone) {
 TEST(ToleranceBound, EveryMethodHoldsTheSame) {
     const Volume volume = test::randomVolume({{0, 0, 0}, {30, 25, 20}}, 11);
     RenderOptions options = optionsOf({1, 0.3, -0.2}, false, 0.4);
-    options.tolerance = {0.2, 12};
-    options.method = Method::kDelta;
+    options.splat.tolerance = {0.2, 12};
+    options.splat.method = Method::kDelta;
     const Image expected = render(volume, options).image;
     for (const Method method : {Method::kAuto, Method::kSparse, Method::kTraditional}) {
-        options.method = method;
+        options.splat.method = method;
         EXPECT_EQ(render(volume, options).image.rgba, expected.rgba) << methodName(method);
     }
 }
@@ -133,7 +133,7 @@ TEST(ToleranceBound, RefusesTolerancesOutOfRange) {
     for (const Tolerance tolerance : {Tolerance{-0.1, 0}, Tolerance{1, 0}, Tolerance{NAN, 0},
                                       Tolerance{0, -1}, Tolerance{0, INFINITY}}) {
         RenderOptions options = optionsOf({0, 0, -1}, false, 0.4);
-        options.tolerance = tolerance;
+        options.splat.tolerance = tolerance;
         try {
             render(volume, options);
             FAIL();

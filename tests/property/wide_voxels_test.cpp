@@ -15,7 +15,7 @@
 
 #include "deltasplat/memory_limit.h"
 #include "deltasplat/openvdb_grid.h"
-#include "deltasplat/parted_picture.h"
+#include "deltasplat/picture.h"
 #include "deltasplat/prepared_scene.h"
 #include "deltasplat/render.h"
 #include "deltasplat/threads.h"
@@ -206,7 +206,7 @@ TEST(WideVoxels, lookAsTheyDoInOnePiece) {
             RenderOptions options = optionsOf(look);
             options.camera = camera;
             const RenderResult result = render(*volume, options);
-            PartedPicture parted(PreparedScene({volume, options.optics}, options), result.camera);
+            Picture parted(PreparedScene({volume, options.optics}, options.splat), result.camera);
             Image whole(result.image.size);
             parted.show({{0, 0}, whole.size}, whole);
             EXPECT_EQ(mostDifference(result.image, whole), 0)
@@ -270,9 +270,9 @@ TEST(WideVoxels, areTheSameOnAnyThreads) {
         RenderOptions options = optionsOf(Look::kColors);
         options.camera = camera;
         const Image picture = render(volume, options).image;
-        options.method = Method::kDelta;
+        options.splat.method = Method::kDelta;
         EXPECT_EQ(picture.rgba, render(volume, options).image.rgba) << camera.view;
-        options.method = Method::kSparse;
+        options.splat.method = Method::kSparse;
         const ThreadLimit limit(1);
         EXPECT_EQ(picture.rgba, render(volume, options).image.rgba) << camera.view;
     }

@@ -39,7 +39,7 @@ void expectTheSameHoweverMade(const Make& make) {
 /// Expects so of a picture.
 inline void expectTheSameHoweverItIsMade(const Volume& volume, RenderOptions options) {
     expectTheSameHoweverMade([&](Method method) {
-        options.method = method;
+        options.splat.method = method;
         return render(volume, options).image.rgba;
     });
 }
@@ -47,14 +47,14 @@ inline void expectTheSameHoweverItIsMade(const Volume& volume, RenderOptions opt
 /// Expects of a scene prepared once what render() makes, from several sides.
 inline void expectPreparedIsTheSame(const std::shared_ptr<const Volume>& volume,
                                     const RenderOptions& options) {
-    const PreparedScene scene({volume, options.optics}, options);
+    const PreparedScene scene({volume, options.optics}, options.splat);
     for (const char* view : {"front", "left", "iso"}) {
         RenderOptions one = options;
         one.camera.direction.reset();
         one.camera.view = view;
         const RenderResult expected = render(*volume, one);
         Image image(expected.camera.sizePixels);
-        renderComposite(scene, expected.camera, image);
+        scene.render(expected.camera, image);
         EXPECT_EQ(image.rgba, expected.image.rgba) << view;
     }
 }

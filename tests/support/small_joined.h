@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "picture/sheet_plan.h"
+#include "picture/draw_plan.h"
 
 namespace deltasplat::test {
 

@@ -84,13 +84,13 @@ inline std::vector<CameraOptions> smallCamerasToo() {
 }
 
 inline Camera cameraOf(const Volume& volume, const CameraOptions& options) {
-    return makeCamera(options, volume.box, volume.worldFromIndex, volume.space);
+    return makeCamera(options, volume);
 }
 
 inline Image pictureOf(const PreparedScene& scene, const CameraOptions& options) {
     const Camera camera = cameraOf(*scene.scene().volume, options);
     Image image(camera.sizePixels);
-    renderComposite(scene, camera, image);
+    scene.render(camera, image);
     return image;
 }
 

@@ -78,7 +78,7 @@ TEST(MeasureMethods, RendersWhatRenderRenders) {
     EXPECT_FALSE(run.tolerance);
     for (std::size_t i = 0; i < kBenchMethods.size(); ++i) {
         RenderOptions one = options;
-        one.method = kBenchMethods[i];
+        one.splat.method = kBenchMethods[i];
         const RenderResult result = render(volume, one);
         EXPECT_EQ(run.methods[i].method, kBenchMethods[i]);
         EXPECT_EQ(run.methods[i].stamps, result.stats.stamps);
@@ -99,12 +99,12 @@ TEST(MeasureMethods, MeasuresTheExactPictureBesideATolerance) {
         });
     RenderOptions options = optionsFor(volume);
     options.optics.transferFunction.colors = {{0, {1, 1, 1}}};
-    options.tolerance.relative = 0.25;
+    options.splat.tolerance.relative = 0.25;
     const BenchRun run = measureMethods(volume, options, 1);
     ASSERT_TRUE(run.tolerance);
     EXPECT_EQ(run.tolerance->tolerance.relative, 0.25);
-    options.tolerance = {};
-    options.method = Method::kDelta;
+    options.splat.tolerance = {};
+    options.splat.method = Method::kDelta;
     const RenderResult exact = render(volume, options);
     EXPECT_EQ(run.tolerance->exact.rgba, exact.image.rgba);
     EXPECT_EQ(run.tolerance->exactStamps, exact.stats.stamps);

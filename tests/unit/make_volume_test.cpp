@@ -44,7 +44,7 @@ Image pictureOf(const Volume& volume) {
     options.camera.sizePixels = {40, 40};
     options.camera.azimuthDegrees = 20;
     // Levels between values differ from one code book to another.
-    options.between = 0;
+    options.splat.between = 0;
     options.optics.transferFunction.colors = {{0, {1, 0, 0}}, {30, {0, 1, 0.5}}};
     options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {30, 0.5, 0.5, 0}};
     return render(volume, options).image;

@@ -31,9 +31,9 @@ class Rounds {
         : volume_(volume), options_(options), run_(run) {}
 
     void renderOnce(std::size_t place, bool counts, const Listener& listener) {
-        options_.method = kBenchMethods[place];
+        options_.splat.method = kBenchMethods[place];
         RenderResult result = render(volume_, options_, listener);
-        if (options_.method == Method::kDelta) run_.stats = result.stats;
+        if (options_.splat.method == Method::kDelta) run_.stats = result.stats;
         if (counts) stats_[place].push_back(result.stats);
         run_.methods[place].stamps = result.stats.stamps;
         compare(std::move(result.image), run_.methods[place]);
@@ -81,12 +81,12 @@ class Rounds {
 ToleranceRuns measureTolerance(const Volume& volume, RenderOptions options, const BenchRun& run,
                                const Listener& listener) {
     ToleranceRuns runs;
-    runs.tolerance = options.tolerance;
+    runs.tolerance = options.splat.tolerance;
     runs.bound = {run.stats.errorBoundColor, run.stats.errorBoundAlpha};
-    options.method = Method::kDelta;
-    options.tolerance = {};
+    options.splat.method = Method::kDelta;
+    options.splat.tolerance = {};
     // Nor are slices joined with a tolerance.
-    options.mostJoined = 1;
+    options.splat.mostJoined = 1;
     RenderResult exact = render(volume, options, listener);
     runs.measured = differenceOf(run.picture, exact.image);
     runs.exact = std::move(exact.image);
@@ -139,7 +139,7 @@ BenchRun measureMethods(const Volume& volume, const RenderOptions& options, int 
     run.dims = volume.box.dims();
     run.threads = threadCount();
     run.repeats = repeats;
-    const bool exactToo = !options.tolerance.isExact();
+    const bool exactToo = !options.splat.tolerance.isExact();
     const double pictures = double(kMethodCount) * (repeats + 1) + (exactToo ? 1 : 0);
     double done = 0;
     // The share stands still while a picture is made: asked for interrupts, nothing to show.

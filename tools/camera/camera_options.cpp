@@ -201,8 +201,7 @@ void warnOfClipping(const PictureOptions& options, std::optional<int> frame, con
                     const Listener& listener) {
     if (!options.camera.asked() || volume.empty()) return;
     const FilmCamera film = filmAt(options.camera, frame);
-    const Camera camera =
-        makeCamera(options.render.camera, volume.box, volume.worldFromIndex, volume.space);
+    const Camera camera = makeCamera(options.render.camera, volume);
     // Lengths of the camera's own, in the world.
     const double scale = glm::length(glm::dvec3(film.worldFromCamera[0]));
     double nearest = std::numeric_limits<double>::infinity();

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,7 +11,7 @@
 #include "base/progress.h"
 #include "batch/file_pattern.h"
 #include "deltasplat/error.h"
-#include "deltasplat/slab_part.h"
+#include "deltasplat/slabs.h"
 #include "formats/name_signs.h"
 #include "listener.h"
 #include "output_files.h"
@@ -60,15 +61,15 @@ std::string noteOf(const Notes& notes, const std::string& name) {
 }
 
 // Takes from a part what a picture has of its scene, and checks what is asked for of it.
-void applyParts(const FoldedPicture& folded, const std::string& file, RenderCommand& command) {
-    const std::string version = noteOf(folded.notes().picture, "version");
+void applyParts(const SlabFiles& parts, const std::string& file, RenderCommand& command) {
+    const std::string version = noteOf(parts.notes().picture, "version");
     if (version != programVersion()) {
         throw Error(ErrorCode::kInput,
                     gotExpected(file, "a part that version " + version + " wrote",
                                 "one of version " + programVersion()));
     }
-    const Camera& camera = folded.camera();
-    command.input = noteOf(folded.notes().part, "input");
+    const Camera& camera = parts.camera();
+    command.input = noteOf(parts.notes().part, "input");
     CameraOptions& options = command.picture.render.camera;
     options.overscanPixels = camera.overscanPixels;
     options.sizePixels = camera.sizePixels - 2 * camera.overscanPixels;
@@ -90,27 +91,27 @@ void warnOfUnusedOptions(const CLI::App& app, const RenderCommand& command,
     warnOfUnusedColorOptions(app, command, display);
 }
 
-ImageFileOptions fileOptions(const RenderCommand& command, const FoldedPicture& folded,
-                             const Session& session) {
+ImageFileOptions fileOptions(const RenderCommand& command, const PartNotes& partNotes,
+                             const Picture& folded, const Session& session) {
     RenderResult said;
     said.camera = folded.camera();
     said.stats = folded.stats();
     boundOver(command.picture.background, said.stats);
-    const Notes& notes = folded.notes().picture;
+    const Notes& notes = partNotes.picture;
     ImageFileOptions file = imageOptions(
         command, {noteOf(notes, "codeBook"), noteOf(notes, "codeError")}, said, session);
-    file.metadata.emplace_back("partCommandLine", noteOf(folded.notes().part, "commandLine"));
+    file.metadata.emplace_back("partCommandLine", noteOf(partNotes.part, "commandLine"));
     return file;
 }
 
-void writeWhole(const RenderCommand& command, FoldedPicture& folded, const Session& session,
-                const Listener& listener) {
+void writeWhole(const RenderCommand& command, const PartNotes& notes, Picture& folded,
+                const Session& session, const Listener& listener) {
     const glm::ivec2 size = folded.camera().sizePixels;
     constexpr double kBytesPerPixel = 16;
     requireMemory("picture", kBytesPerPixel * size.x * size.y);
     Image image(size);
     folded.show({{0, 0}, size}, image);
-    ImageFileOptions file = fileOptions(command, folded, session);
+    ImageFileOptions file = fileOptions(command, notes, folded, session);
     finishLight(command, image, file, listener);
     writeImage(command.output, image, file);
 }
@@ -140,27 +141,29 @@ void runFold(const CLI::App& app, const FoldCommand& asked, const Session& sessi
     const Files parts = partsOf(asked);
     checkOutput("--output", command.output, parts, "the parts");
     checkColors(command);
-    FoldedPicture folded(parts);
-    applyParts(folded, parts.front().string(), command);
+    SlabFiles files(parts);
+    const PartNotes& notes = files.notes();
+    std::optional<Picture> picture;
+    applyParts(files, parts.front().string(), command);
     {
         ProgressDisplay display(session.common);
         warnOfUnusedOptions(app, command, display);
         const Listener all = display.stage(0, 1);
-        folded.fold(partOf(all, 0, kFoldShare));
+        Picture& folded = picture.emplace(files.fold(partOf(all, 0, kFoldShare)));
         const Listener writing = partOf(all, kFoldShare, 1);
         if (isMadeInParts(command, command.picture.render.camera)) {
             writeInParts(
                 command, folded.camera().sizePixels,
                 [&](const PixelBox& part, Image& image) { folded.show(part, image); },
                 folded.stats().tolerance.isExact(),
-                [&] { return fileOptions(command, folded, session); }, writing);
+                [&] { return fileOptions(command, notes, folded, session); }, writing);
         } else {
-            writeWhole(command, folded, session, writing);
+            writeWhole(command, notes, folded, session, writing);
         }
         all.report(1);
         allIsWritten();
     }
-    RenderStats stats = folded.stats();
+    RenderStats stats = picture->stats();
     boundOver(command.picture.background, stats);
     if (!stats.tolerance.isExact() && !session.common.quiet) showErrorBound(stats);
 }

@@ -163,8 +163,7 @@ std::string stampsText(const GridReport& report) {
 
 std::string placeText(const Volume& volume) {
     const VolumePlace place = placeOf(volume);
-    const Camera camera =
-        makeCamera(CameraOptions(), volume.box, volume.worldFromIndex, volume.space);
+    const Camera camera = makeCamera(CameraOptions(), volume);
     std::string directions;
     for (int axis = 0; axis < 3; ++axis) {
         directions += (axis > 0 ? ", " : "") + std::string(1, "ijk"[axis]) + " " +

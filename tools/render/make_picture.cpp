@@ -124,9 +124,9 @@ RenderResult renderPrepared(const PreparedScene& scene, const RenderOptions& opt
                             const Listener& listener) {
     const Volume& seen = *scene.scene().volume;
     RenderResult result;
-    result.camera = makeCamera(options.camera, seen.box, seen.worldFromIndex, seen.space);
+    result.camera = makeCamera(options.camera, seen);
     result.image = Image(result.camera.sizePixels);
-    result.stats = renderComposite(scene, result.camera, result.image, listener);
+    result.stats = scene.render(result.camera, result.image, listener);
     return result;
 }
 
@@ -136,7 +136,7 @@ RenderResult makeInParts(const RenderCommand& command, const ReadScene& read,
                          const Listener& listener) {
     const Clock::time_point start = Clock::now();
     std::optional<PreparedScene> own;
-    if (!part.prepared) own.emplace(Scene{read.volume, read.options.optics}, read.options);
+    if (!part.prepared) own.emplace(Scene{read.volume, read.options.optics}, read.options.splat);
     const double sceneSeconds = own ? secondsSince(start) : 0;
     RenderResult result = renderInParts(
         command, own ? *own : *part.prepared, read.options.camera,
@@ -271,8 +271,7 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
 void makeBlack(const RenderCommand& command, const Session& session, const SequencePart& part) {
     Image image = blackPicture(command);
     const Volume& seen = part.look->sequence.seen();
-    const Camera camera =
-        makeCamera(command.picture.render.camera, seen.box, seen.worldFromIndex, seen.space);
+    const Camera camera = makeCamera(command.picture.render.camera, seen);
     if (!command.annotations.lines.empty()) {
         AnnotationChoice lines;
         lines.lines = command.annotations.lines;

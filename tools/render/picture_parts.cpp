@@ -11,7 +11,7 @@
 #include "deltasplat/image/exr_rows.h"
 #include "deltasplat/image/tone.h"
 #include "deltasplat/image/write_image.h"
-#include "deltasplat/parted_picture.h"
+#include "deltasplat/picture.h"
 #include "image/seen_box.h"
 #include "render/render_modes.h"
 #include "render/tone_options.h"
@@ -102,9 +102,9 @@ RenderResult renderInParts(const RenderCommand& command, const PreparedScene& sc
                            const Listener& listener) {
     const Volume& seen = *scene.scene().volume;
     RenderResult result;
-    result.camera = makeCamera(camera, seen.box, seen.worldFromIndex, seen.space);
+    result.camera = makeCamera(camera, seen);
     requireRow(result.camera.sizePixels);
-    PartedPicture picture(scene, result.camera, partOf(listener, 0, kRenderShare));
+    Picture picture(scene, result.camera, partOf(listener, 0, kRenderShare));
     writeInParts(
         command, result.camera.sizePixels,
         [&](const PixelBox& part, Image& image) { picture.show(part, image); },

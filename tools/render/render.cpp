@@ -57,7 +57,7 @@ void warnOfUnusedJoin(const CLI::App& app, const RenderCommand& command, Progres
         if (isGiven(app, option))
             return display.warn(std::string("--join: has no effect with ") + option);
     }
-    if (!command.picture.render.tolerance.isExact())
+    if (!command.picture.render.splat.tolerance.isExact())
         display.warn("--join: has no effect with a tolerance");
 }
 
@@ -67,7 +67,7 @@ bool toleranceDoesNotPay(const PictureOptions& picture) {
     const RenderOptions& render = picture.render;
     const bool isLit = picture.shading.asked() || picture.scatter.asked() ||
                        picture.medium.asked() || picture.surface.asked;
-    return render.mode == Mode::kComposite && render.method == Method::kAuto && !isLit;
+    return render.mode == Mode::kComposite && render.splat.method == Method::kAuto && !isLit;
 }
 
 void warnOfTolerance(const CLI::App& app, const RenderCommand& command, ProgressDisplay& display) {
@@ -174,7 +174,7 @@ void prepare(const CLI::App& app, RenderCommand& command, std::size_t pictures,
     applyLayers(app, command.picture);
     applySurface(app, command.picture.render.mode, isFog(command.picture), command.picture.surface,
                  command.picture.read);
-    if (toleranceDoesNotPay(command.picture)) command.picture.render.tolerance = {};
+    if (toleranceDoesNotPay(command.picture)) command.picture.render.splat.tolerance = {};
 }
 
 void runBatch(const CLI::App& app, const RenderCommand& command, const Session& session) {

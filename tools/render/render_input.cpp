@@ -21,23 +21,6 @@
 namespace deltasplat {
 namespace {
 
-constexpr const char* kLabelPreset = "labels";
-
-// Returns a value that is no whole number, if there is one.
-std::optional<double> anyBroken(const Volume& volume) {
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-        if (volume.histogram[code] == 0) continue;
-        const double value = volume.codeBook.valueOf(Code(code));
-        if (value != std::floor(value)) return value;
-    }
-    return {};
-}
-
-// Whether a file says that its values are labels, and they can be.
-bool holdsLabels(const Volume& volume) {
-    return volume.labels && !anyBroken(volume);
-}
-
 // Who sees little of it should know why.
 void warnOfOtherData(const Preset& preset, const Volume& volume, const Listener& listener) {
     if (volume.empty()) return;
@@ -70,9 +53,7 @@ const Preset* presetOf(const PictureOptions& picture, const Volume& volume) {
     if (!picture.transferFunction.empty())
         return parseTransferFunction(picture.transferFunction).preset;
     const bool isFree = picture.render.mode == Mode::kComposite && !picture.render.optics.range;
-    if (!isFree) return nullptr;
-    if (holdsLabels(volume)) return findPreset(kLabelPreset);
-    return isHounsfield(volume) ? findPreset(kScanPreset) : nullptr;
+    return isFree ? defaultPreset(volume) : nullptr;
 }
 
 // Surfaces are shaded unless something else is wanted: those of level sets and of scanned bodies.
@@ -190,7 +171,7 @@ void finishSurface(const PictureOptions& picture, const Volume& volume, Optics& 
 
 RenderOptions readOptics(const PictureOptions& picture, const Listener& listener) {
     RenderOptions options = picture.render;
-    options.mostJoined = picture.join.value_or(kMostJoined);
+    options.splat.mostJoined = picture.join.value_or(kMostJoined);
     const ColorBy colorBy = options.optics.colorBy;
     if (picture.shading.asked() && !isFog(picture) && colorBy != ColorBy::kValue) {
         throw Error(ErrorCode::kUsage,
@@ -219,7 +200,7 @@ glm::dvec3 upOf(const PictureOptions& picture, const Volume& volume) {
 namespace {
 
 bool mixesVoxels(const PictureOptions& picture) {
-    return picture.render.mode != Mode::kComposite || picture.render.between.value_or(0) > 0;
+    return picture.render.mode != Mode::kComposite || picture.render.splat.between.value_or(0) > 0;
 }
 
 // Labels stand apart; what is between two of them looks like a third.
@@ -229,7 +210,7 @@ void warnOfMixedLabels(const std::string& option, const PictureOptions& picture,
     const Mode mode = picture.render.mode;
     if (!mixesVoxels(picture)) return;
     const std::string what = mode == Mode::kComposite
-                                 ? "--between " + std::to_string(*picture.render.between)
+                                 ? "--between " + std::to_string(*picture.render.splat.between)
                                  : "--mode " + modeName(mode);
     listener.warn(option + ": " + what +
                   " mixes values of neighbouring voxels, so that between labels it shows others "

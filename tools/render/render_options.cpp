@@ -343,15 +343,15 @@ void addPartOptions(CLI::App& app, PictureOptions& options) {
 void addSplattingOptions(CLI::App& app, PictureOptions& picture) {
     RenderOptions& options = picture.render;
     OptionGroup group(app, "Splatting");
-    group.addValue("--tolerance", "T", options.tolerance.relative, relativeTolerance(),
+    group.addValue("--tolerance", "T", options.splat.tolerance.relative, relativeTolerance(),
                    withDefault("Stamp less: keep what a voxel was while it is within T times the\n"
                                "true one, 0 <= T < 1; how far the picture may be off is proved\n"
                                "(render --method auto: only of what is lit)",
-                               numberText(options.tolerance.relative)));
-    group.addValue("--tolerance-value", "V", options.tolerance.value, number(0),
+                               numberText(options.splat.tolerance.relative)));
+    group.addValue("--tolerance-value", "V", options.splat.tolerance.value, number(0),
                    withDefault("The same within V data units, which bounds no picture",
-                               numberText(options.tolerance.value)));
-    group.addValue("--sigma", "V", options.sigma, number(kMinSigma, kMaxSigma),
+                               numberText(options.splat.tolerance.value)));
+    group.addValue("--sigma", "V", options.splat.sigma, number(kMinSigma, kMaxSigma),
                    "Standard deviation of the footprint in voxels, " + numberText(kMinSigma) +
                        " to " + numberText(kMaxSigma) +
                        "\n(default: with one sheet pixel each, voxels, or what they are divided\n"
@@ -359,14 +359,14 @@ void addSplattingOptions(CLI::App& app, PictureOptions& picture) {
                        numberText(kLeastSigma) + " of a voxel, growing to " +
                        numberText(kMostSigma) + " with what it covers)");
     group.addValue(
-        "--between", "N", options.between, wholeNumber(0, kMostBetween),
+        "--between", "N", options.splat.between, wholeNumber(0, kMostBetween),
         "Slices put between two neighbouring ones, 0 to " + std::to_string(kMostBetween) +
             ", values mixed;\nif any, each voxel is also divided into 2x2 within its "
             "slice\n(default: 1 where a voxel covers 1.5 pixels or more and no\n"
             "--resolution is given, but not for thin fog (opacities up to\n0.25 a voxel), "
             "labels and colours that jump, nor more\nthan " +
             std::to_string(kMostDivided) + " blocks of voxels; else 0, and slices may\nbe joined)");
-    group.addFlag("--keep-lone", options.keepsLone,
+    group.addFlag("--keep-lone", options.splat.keepsLone,
                   "Of divided voxels, draws as a whole one that would hardly be seen between\n"
                   "its neighbours, so that no speck fades and thin things look thicker (else\n"
                   "as dense as it is on average, as ray casters show it)");
@@ -378,14 +378,14 @@ void addSplattingOptions(CLI::App& app, PictureOptions& picture) {
         "where a\ncamera moves, frames show one volume, or parts are made with\n--slab-range); of "
         "16 or more also 2x2 voxels beside each other where one covers\n3/16 of a pixel or less, "
         "of 32 4x4 of at most 1/16, if it hardly shows");
-    group.addValue("--resolution", "R", options.resolution, resolution(),
+    group.addValue("--resolution", "R", options.splat.resolution, resolution(),
                    "Sheet pixels per voxel, 1 to " + std::to_string(kMaxResolution) +
                        "\n(default: 1 or 2, chosen from the screen; 1/2 or 1/4 where\nvoxels "
                        "beside each other are joined)");
-    group.addValue("--filter", "NAME", options.filter, pictureFilter(),
+    group.addValue("--filter", "NAME", options.splat.filter, pictureFilter(),
                    withDefault("What makes pixels of the rendered plane: catmull-rom (sharp),\n"
                                "mitchell, gauss (soft) or box (the mean over a pixel)",
-                               pictureFilterName(options.filter)));
+                               pictureFilterName(options.splat.filter)));
 }
 
 void addRenderOptions(CLI::App& app, RenderCommand& command) {
@@ -414,7 +414,7 @@ void addRenderOptions(CLI::App& app, RenderCommand& command) {
     addGroundOption(app, command.ground);
     addMediumOptions(app, command.picture.medium);
     addPartOptions(app, command.picture);
-    addMethodOption(app, command.picture.render.method);
+    addMethodOption(app, command.picture.render.splat.method);
     addSplattingOptions(app, command.picture);
     addAnnotationOptions(app, command.annotations);
     addInputOptions(app, command.picture.read);
@@ -449,15 +449,14 @@ void warnOfUnusedView(const CLI::App& app, const CameraOptions& options, const V
     if (isGiven(app, "--direction")) return listener.warn("--view: has no effect with --direction");
     if (!options.eyeWorld) return;
     // An eye at the target, which may be the middle of the volume, looks as the view says.
-    const Camera middle =
-        makeCamera(CameraOptions(), volume.box, volume.worldFromIndex, volume.space);
+    const Camera middle = makeCamera(CameraOptions(), volume);
     if (*options.eyeWorld != options.targetWorld.value_or(middle.targetWorld))
         listener.warn("--view: has no effect with --eye");
 }
 
 void warnOfDetector(const CameraOptions& options, const Volume& volume, const Listener& listener) {
     if (!options.sourceToDetectorWorld || volume.empty()) return;
-    const Camera camera = makeCamera(options, volume.box, volume.worldFromIndex, volume.space);
+    const Camera camera = makeCamera(options, volume);
     double farthest = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec4 index(cornerOf(volume.box, corner), 1);

@@ -18,7 +18,7 @@
 #include "deltasplat/render.h"
 #include "deltasplat/render_aovs.h"
 #include "deltasplat/render_deep.h"
-#include "deltasplat/slab_part.h"
+#include "deltasplat/slabs.h"
 #include "formats/usd/usd_volume.h"
 #include "listener.h"
 #include "options/command_line.h"

@@ -225,7 +225,7 @@ PreparedScene prepareOnce(const RenderCommand& command, SequenceLook& look,
     warnings.warning = listener.warning;
     const FrameLook frame{look, 0};
     const ReadScene scene = readScene(command.input, command.picture, warnings, &frame);
-    return PreparedScene({scene.volume, scene.options.optics}, scene.options);
+    return PreparedScene({scene.volume, scene.options.optics}, scene.options.splat);
 }
 
 // Returns the scene as another frame's transfer function shows it.
@@ -243,8 +243,7 @@ void fixCamera(const Volume& seen, std::optional<int> turntable, CameraOptions& 
     double distance = 0;
     for (int frame = 0; frame < turntable.value_or(1); ++frame) {
         turned.azimuthDegrees = choice.azimuthDegrees + turnOf(frame + 1, turntable);
-        const Camera camera =
-            makeCamera(turned, seen.box, seen.worldFromIndex, seen.space).withoutOverscan();
+        const Camera camera = makeCamera(turned, seen).withoutOverscan();
         width = std::max(width, camera.frameWidthWorld);
         distance = std::max(distance, camera.targetDistanceWorld);
         if (!choice.targetWorld && !choice.worldFromCamera) choice.targetWorld = camera.targetWorld;

@@ -120,22 +120,20 @@ void applySlabs(const CLI::App& app, const RenderCommand& command) {
 
 void writeSlabs(const CLI::App& app, const RenderCommand& command, const ReadScene& scene,
                 const Session& session, const Listener& listener) {
-    SplatOptions splat = scene.options;
+    SplatOptions splat = scene.options.splat;
     splat.mostJoined = joinOfMany(command.picture);
     const PreparedScene prepared({scene.volume, scene.options.optics}, splat);
     // Of all grids of a medium.
     const Volume& seen = *prepared.scene().volume;
-    const Camera camera =
-        makeCamera(scene.options.camera, seen.box, seen.worldFromIndex, seen.space);
-    const LayeredPicture picture(prepared, camera, partOf(listener, 0, kPrepareShare));
+    const Camera camera = makeCamera(scene.options.camera, seen);
+    const SlabPicture picture(prepared, camera, partOf(listener, 0, kPrepareShare));
     const CodeText codes = codesOf(*scene.volume);
     PartNotes notes{optionsOf(app), commonMetadata(session)};
     notes.picture.insert(notes.picture.begin(), notes.part.front());
     notes.picture.insert(notes.picture.end(),
                          {{"codeBook", codes.book}, {"codeError", codes.error}});
     notes.part.emplace_back("input", command.input.string());
-    writeSlabPart(picture, *command.slabs, notes, command.output,
-                  partOf(listener, kPrepareShare, 1));
+    writeSlabs(picture, *command.slabs, notes, command.output, partOf(listener, kPrepareShare, 1));
 }
 
 }  // namespace deltasplat

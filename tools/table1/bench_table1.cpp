@@ -89,7 +89,7 @@ void measure(const Table1DataSet& dataSet, const std::filesystem::path& file,
                           measureMethods(volume, options, found.report.repeats, stage(from, to))};
     };
     Table1Row row{dataSet, run(0.1, 0.55), {}};
-    options.tolerance.value = kTable1ToleranceValue;
+    options.splat.tolerance.value = kTable1ToleranceValue;
     row.held = run(0.55, 1);
     addDifference(row.exact, found.failures);
     addDifference(row.held, found.failures);

@@ -70,9 +70,9 @@ RenderOptions table1Options(const Volume& volume, const TransferFunction& transf
     options.camera.sizePixels = {dims.x, dims.y};
     options.camera.frameWidthWorld = dims.x * volume.voxelSize().x;
     options.optics.transferFunction = transferFunction;
-    options.sigma = kTable1Sigma;
-    options.footprintWidth = kTable1Footprint;
-    options.resolution = 1;
+    options.splat.sigma = kTable1Sigma;
+    options.splat.footprintWidth = kTable1Footprint;
+    options.splat.resolution = 1;
     return options;
 }
 

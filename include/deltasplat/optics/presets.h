@@ -30,6 +30,8 @@ const std::vector<Preset>& presets();
 
 /// Shows what a first look at a CT scan is for.
 inline constexpr const char* kScanPreset = "ct-soft-tissue";
+/// Gives each label a colour of its own.
+inline constexpr const char* kLabelPreset = "labels";
 
 /// Returns the preset of that name, or null.
 const Preset* findPreset(const std::string& name);
@@ -37,6 +39,14 @@ const Preset* findPreset(const std::string& name);
 /// Returns a preset's transfer function.
 /// @throw Error(kUsage) naming all presets, if there is none of that name
 TransferFunction presetFunction(const std::string& name);
+
+/// Returns the preset of a first look at a volume: kLabelPreset of labels, kScanPreset of
+/// Hounsfield units (isHounsfield); null: none, but a ramp.
+const Preset* defaultPreset(const Volume& volume);
+
+/// Returns what a volume is first shown by, as by the program: its default preset, with the colours
+/// that a file gives labels, or else defaultRamp; level sets and scans are lit as surfaces.
+Optics defaultOptics(const Volume& volume);
 
 /// Lets a preset of a range show where most values of the volume lie: unless `optics.range` is
 /// given, it becomes rampRange(volume), the 1st to the 99th percentile, or of fog from the

@@ -168,5 +168,8 @@ struct Camera {
 ///        cannot be inverted
 Camera makeCamera(const CameraOptions& options, const IndexBox& box,
                   const glm::dmat4& worldFromIndex, const std::string& space = "");
+inline Camera makeCamera(const CameraOptions& options, const Volume& volume) {
+    return makeCamera(options, volume.box, volume.worldFromIndex, volume.space);
+}
 
 }  // namespace deltasplat

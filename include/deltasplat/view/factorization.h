@@ -146,6 +146,7 @@ struct Subdivision {
     int voxels() const { return slices * within * within; }
     /// The smallest share of a voxel in a value mixed from several, as 1 / n.
     int smallestShare() const { return 2 * slices * (within == 2 ? 16 : 1); }
+    bool operator==(const Subdivision&) const = default;
 };
 
 /// Returns the factorization for thin voxels, which are what is counted then: voxel i becomes

@@ -374,9 +374,8 @@ class LostLight {
         const double finest = 0.5 * std::max(ground_.finestPixel(lightCamera), ball.voxel);
         const Camera camera = lightCamera.of(finest);
         requireMemory("`ground`", 16.0 * camera.sizePixels.x * camera.sizePixels.y);
-        Image image(camera.sizePixels);
         // An empty one is no reason to warn.
-        renderer_.render(scene, camera, image, {});
+        const Image image = scene.render(camera);
         forPlaces([&](std::size_t i, const SeenPlace& place) {
             const double share = alphaAt(image, camera, place.world);
             if (share > 0) hidden[i] += (1 - hidden[i]) * share;
@@ -387,7 +386,6 @@ class LostLight {
     const Camera& camera_;
     glm::dvec3 normal_;
     std::vector<glm::dvec3> lost_;  // [height][width]
-    Renderer renderer_;
 };
 
 }  // namespace
@@ -415,7 +413,7 @@ Image renderGroundShadow(const Volume& volume, const RenderOptions& options, con
     const std::shared_ptr<const Volume> above = volumeAbove(volume, ground, normal, listener);
     if (!above) return Image(camera.sizePixels);
     SplatOptions splat;
-    splat.method = options.method;
+    splat.method = options.splat.method;
     splat.between = 0;  // lit fog is drawn by whole voxels
     std::vector<Hiding> hiding;
     const auto addHiding = [&](const std::shared_ptr<const Volume>& one) {

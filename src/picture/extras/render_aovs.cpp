@@ -15,10 +15,8 @@
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/prepared_scene.h"
+#include "picture/extras/render_deep.h"
 #include "picture/far_groups.h"
-#include "picture/picture_view.h"
-#include "picture/prepared_axis.h"
-#include "picture/sheet_plan.h"
 #include "screen/depth_builder.h"
 
 namespace deltasplat {
@@ -161,12 +159,12 @@ class AovRender {
         // All are drawn as the picture is: of all of its voxels, and none divided if its are not.
         const bool isWhole =
             optics.scattering || !optics.parts.empty() || optics.colorGrids ||
-            (!options.between && !optics.surface && optics.transferFunction.colorsJump());
-        if (isWhole) options_.between = 0;
+            (!options.splat.between && !optics.surface && optics.transferFunction.colorsJump());
+        if (isWhole) options_.splat.between = 0;
         if (optics.parts.empty()) return;
         Optics unlit = optics;
         unlit.scattering.reset();
-        volume_ = PreparedScene({volume_, unlit}, options).scene().volume;
+        volume_ = PreparedScene({volume_, unlit}, options.splat).scene().volume;
     }
 
     std::vector<ImageChannel> take() { return std::move(channels_); }
@@ -202,10 +200,8 @@ class AovRender {
 
   private:
     Image picture(Optics optics, const Listener& listener) const {
-        const PreparedScene scene({volume_, std::move(optics)}, options_);
-        Image image(camera_.sizePixels);
-        renderComposite(scene, camera_, image, listener);
-        return image;
+        return PreparedScene({volume_, std::move(optics)}, options_.splat)
+            .render(camera_, listener);
     }
 
     // @param valueOf  of a pixel, by its number
@@ -249,7 +245,7 @@ class AovRender {
 
     void addMattes(const Listener& listener) {
         // Of white alone slices could be joined where the picture's are not.
-        options_.mostJoined = joinedOfPicture();
+        options_.splat.mostJoined = joinedOfPicture();
         const auto layers = 1 + int(withoutGlow(options_.optics).parts.size());
         for (int first = 0; first < layers; first += 3) {
             const Image image = picture(mattes(options_.optics, first),
@@ -264,7 +260,7 @@ class AovRender {
     int joinedOfPicture() const {
         const Optics& optics = options_.optics;
         if (optics.scattering || optics.shading || !optics.parts.empty()) return 1;
-        const PreparedScene scene({volume_, optics}, options_);
+        const PreparedScene scene({volume_, optics}, options_.splat);
         if (!scene.impl().far) return joinedOf(scene.impl());
         int joined = kMostJoined;
         for (std::size_t i = 0; i < scene.impl().far->size(); ++i) {
@@ -275,7 +271,7 @@ class AovRender {
     }
 
     int joinedOf(const PreparedScene::Impl& scene) const {
-        return ViewPlan(scene, camera_, false, {}).sheets.joined();
+        return planPicture(scene, camera_, DrawnFor::kSlabs, {}).joined();
     }
 
     // Made for the first channel that needs it, as those below.
@@ -285,11 +281,11 @@ class AovRender {
         depths_.emplace(
             camera_, aovOptions_.depthOpacity,
             optics.surface ? DepthBuilder::Growth::kSurface : DepthBuilder::Growth::kFog);
-        const PreparedScene scene({volume_, outline(optics)}, options_);
-        const DeepRequest singleSlices{0, *depths_};
+        const PreparedScene scene({volume_, outline(optics)}, options_.splat);
         KeptMemory memory;
         Image image(camera_.sizePixels);
-        renderComposite(scene.impl(), camera_, memory, image, listener, &singleSlices);
+        DeepSink singleSlices(0, *depths_, image);
+        renderViews(scene.impl(), camera_, memory, singleSlices, listener);
         return *depths_;
     }
 

@@ -91,47 +91,59 @@ std::vector<DeepCut> cutInDepth(const std::vector<SeenSlab>& seen, bool frontToB
     return cuts;
 }
 
-DeepViewResult renderDeepView(const PictureView& picture, int slicesPerSample, KeptMemory& memory,
-                              DeepStages& stages, Image& flat, const Listener& listener) {
-    const SlabInput& input = picture.slabs();
-    const Subdivision& parts = picture.axis().parts;
+void DeepSink::beginGroup(std::shared_ptr<const PreparedScene::Impl>, const PixelBox&) {
+    group_.emplace(clearImage(image_.size));
+    behind_.emplace(image_, stages_);
+}
+
+void DeepSink::endGroup() {
+    putBehind(image_, {0, 0}, *group_);
+    behind_.reset();
+    group_.reset();
+}
+
+bool DeepSink::isAnyBeyond(float least) const {
+    return deltasplat::isAnyBeyond(image_.rgba, least);
+}
+
+void DeepSink::take(const PlannedView& planned, RenderStats& stats, const Listener& listener) {
+    DeepStages& stages = behind_ ? *behind_ : stages_;
+    Image& flat = group_ ? *group_ : image_;
+    const std::unique_ptr<const PictureView> view = planned.view(planned.axis);
+    const SlabInput& input = view->slabs();
+    const Subdivision& parts = planned.axis->parts();
     const bool frontToBack = input.plane.frontToBack();
     const std::vector<SeenSlab> seen = seenSlabs(input);
-    const std::vector<DeepCut> cuts = cutInDepth(seen, frontToBack, parts, slicesPerSample);
+    const std::vector<DeepCut> cuts = cutInDepth(seen, frontToBack, parts, slicesPerSample_);
     const PlaneBox reach = reachOfAll(input, seen);
     // What is shown may have to be changed for that.
-    const double layers = picture.showChangesLayer() ? 2 : 1;
+    const double layers = view->showChangesLayer() ? 2 : 1;
     requireMemory("layers of a deep picture", layers * layerBytes(reach, input.layout.channels));
-    Layer merged(reach, input.layout.channels, memory);
-    stages.begin(std::make_shared<const SliceDepths>(picture.camera(), picture.worldFromSlices()));
-    DeepViewResult result{1, 0, 0, 0};
-    double compositeSeconds = 0;
+    Layer merged(reach, input.layout.channels, planned.memory);
+    stages.begin(std::make_shared<const SliceDepths>(planned.camera, view->worldFromSlices()));
+    const Listener rendering = partOf(listener, 0.2, 0.95);
+    double gain = 1;
     for (std::size_t i = 0; i < cuts.size(); ++i) {
         const DeepCut& cut = cuts[i];
-        const double share = double(i) / double(cuts.size());
-        const double next = double(i + 1) / double(cuts.size());
+        const double count = double(cuts.size());
+        const Layer layer = renderSlabs(
+            input, cut.slabs, stats, partOf(rendering, double(i) / count, double(i + 1) / count));
         const Clock::time_point start = Clock::now();
-        const Listener rendering = partOf(listener, share, next);
-        SlabRenderer slabs(input, cut.slabs, rendering);
-        slabs.run();
-        mergeBehind(merged, slabs.merge());
-        const double slabSeconds = secondsSince(start);
-        result.slabSeconds += slabSeconds;
-        compositeSeconds += slabSeconds * slabs.compositeShare();
+        mergeBehind(merged, layer);
+        stats.compositeSeconds += secondsSince(start);
         const Clock::time_point warpStart = Clock::now();
-        if (picture.showChangesLayer()) {
+        if (view->showChangesLayer()) {
             Layer shown = merged;
-            result.gain = std::max(result.gain, picture.show(shown, PicturePart(flat)));
+            gain = std::max(gain, view->show(shown, PicturePart(flat)));
         } else {
-            result.gain = std::max(result.gain, picture.show(merged, PicturePart(flat)));
+            gain = std::max(gain, view->show(merged, PicturePart(flat)));
         }
         const double first = faceBefore(cut.firstSlice, parts);
         const double last = faceBefore(cut.lastSlice + 1, parts);
         stages.add(flat, frontToBack ? first : last, frontToBack ? last : first);
-        result.warpSeconds += secondsSince(warpStart);
+        stats.warpSeconds += secondsSince(warpStart);
     }
-    if (result.slabSeconds > 0) result.compositeShare = compositeSeconds / result.slabSeconds;
-    return result;
+    addBound(view->errorBound(), gain, stats);
 }
 
 namespace {
@@ -180,9 +192,9 @@ RenderStats renderSamples(const PreparedScene::Impl& scene, const Camera& camera
                           const DeepOptions& options, DeepImage& deep, Image& flat,
                           const Listener& listener) {
     DeepBuilder builder(camera.sizePixels, options.slicesPerSample);
-    const DeepRequest request{options.slicesPerSample, builder};
+    DeepSink sink(options.slicesPerSample, builder, flat);
     KeptMemory memory;
-    RenderStats stats = renderComposite(scene, camera, memory, flat, listener, &request);
+    RenderStats stats = renderViews(scene, camera, memory, sink, listener);
     const Clock::time_point start = Clock::now();
     memory.endPicture();
     deep = builder.finish();
@@ -204,7 +216,7 @@ RenderResult renderDeep(const Volume& volume, const RenderOptions& options,
     }
     RenderResult result;
     const auto makePicture = [&](const Volume& seen) {
-        result.camera = makeCamera(options.camera, seen.box, seen.worldFromIndex, seen.space);
+        result.camera = makeCamera(options.camera, seen);
         requireBefore(result.camera, seen);
         const glm::ivec2 size = result.camera.sizePixels;
         requireMemory("`sizePixels` " + dimsText(size), kBytesPerPixel * size.x * size.y);
@@ -215,7 +227,7 @@ RenderResult renderDeep(const Volume& volume, const RenderOptions& options,
     // The volume outlives the scene.
     const std::shared_ptr<const Volume> borrowed(std::shared_ptr<const Volume>(), &volume);
     const Clock::time_point start = Clock::now();
-    const PreparedScene::Impl scene({borrowed, options.optics}, options, true);
+    const PreparedScene::Impl scene({borrowed, options.optics}, options.splat, true);
     const double sceneSeconds = secondsSince(start);
     if (!options.optics.parts.empty()) makePicture(*scene.scene.volume);
     result.stats = renderSamples(scene, result.camera, deepOptions, deep, result.image, listener);

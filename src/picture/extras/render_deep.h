@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "deltasplat/progress.h"
-#include "picture/picture_view.h"
+#include "picture/render_views.h"
 #include "screen/deep_builder.h"
 
 namespace deltasplat {
@@ -22,17 +24,28 @@ struct DeepCut {
 std::vector<DeepCut> cutInDepth(const std::vector<SeenSlab>& seen, bool frontToBack,
                                 const Subdivision& parts, int slicesPerSample);
 
-/// What a view of a deep picture took.
-struct DeepViewResult {
-    double gain;            ///< as PictureView::show
-    double slabSeconds;     ///< of slabs
-    double compositeShare;  ///< of those: compositing
-    double warpSeconds;     ///< of the rest
-};
+/// Renders the views of a picture cut by cut, from the front on, and shows each time what there is
+/// so far.
+class DeepSink : public ViewSink {
+  public:
+    /// @param slicesPerSample  as cutInDepth takes it
+    /// @param image  of the camera's size, clear; becomes the flat picture
+    DeepSink(int slicesPerSample, DeepStages& stages, Image& image)
+        : slicesPerSample_(slicesPerSample), stages_(stages), image_(image) {}
 
-/// Renders a view cut by cut, and shows each time what there is so far.
-/// @param flat  becomes the flat picture
-DeepViewResult renderDeepView(const PictureView& picture, int slicesPerSample, KeptMemory& memory,
-                              DeepStages& stages, Image& flat, const Listener& listener);
+    DrawnFor drawnFor() const override { return DrawnFor::kDepths; }
+    void beginGroup(std::shared_ptr<const PreparedScene::Impl> group,
+                    const PixelBox& part) override;
+    void endGroup() override;
+    void take(const PlannedView& planned, RenderStats& stats, const Listener& listener) override;
+    bool isAnyBeyond(float least) const override;
+
+  private:
+    int slicesPerSample_;
+    DeepStages& stages_;
+    Image& image_;
+    std::optional<Image> group_;  // of the group in hand
+    std::optional<StagesBehind> behind_;
+};
 
 }  // namespace deltasplat

@@ -280,8 +280,10 @@ PictureLayout layoutOf(const Json& json) {
     check(layout.camera);
     for (const Json& view : json.at("views")) {
         Reader reader(view);
-        visitView(reader, layout.views.emplace_back());
-        check(layout.views.back());
+        ViewLayout& of = layout.views.emplace_back();
+        visitView(reader, of);
+        check(of);
+        of.place.thin = subdivided(of.place.view, of.place.parts);
     }
     return layout;
 }

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "deltasplat/slab_part.h"
+#include "deltasplat/slabs.h"
 #include "picture/parts/layout_json.h"
 
 namespace deltasplat {

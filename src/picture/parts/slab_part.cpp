@@ -11,10 +11,10 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "deltasplat/error.h"
-#include "deltasplat/slab_part.h"
-#include "picture/parts/layered_picture.h"
+#include "deltasplat/slabs.h"
 #include "picture/parts/part_header.h"
 #include "picture/parts/slab_file.h"
+#include "picture/parts/slab_picture.h"
 
 namespace deltasplat {
 
@@ -75,13 +75,14 @@ std::uint64_t digestOf(const PictureView& view) {
         addColors(plane.low, digest);
     }
     for (int channel = 0; channel < 4; ++channel) digest.add(table.scale[channel]);
-    for (const std::int32_t weight : view.footprint().weights) digest.add(std::uint64_t(weight));
+    for (const std::int32_t weight : view.plan().footprint.weights)
+        digest.add(std::uint64_t(weight));
     return digest.value();
 }
 
 namespace {
 
-PictureLayout layoutOf(const LayeredPicture::Impl& picture) {
+PictureLayout layoutOf(const SlabPicture::Impl& picture) {
     PictureLayout layout{picture.camera, {}};
     for (std::size_t i = 0; i < picture.views.size(); ++i) {
         const PictureView& view = *picture.views[i];
@@ -99,7 +100,7 @@ PictureLayout layoutOf(const LayeredPicture::Impl& picture) {
 }
 
 // What the slabs of a picture show, as PartHeader has it.
-std::string contentOf(const LayeredPicture::Impl& picture) {
+std::string contentOf(const SlabPicture::Impl& picture) {
     std::string text;
     for (const auto& view : picture.views) {
         char digits[17];
@@ -110,7 +111,7 @@ std::string contentOf(const LayeredPicture::Impl& picture) {
 }
 
 // About how long a slab takes: what is stamped, and slices that are read.
-double workOf(const LayeredPicture::Impl& picture, const LayeredPicture::Impl::Place& place) {
+double workOf(const SlabPicture::Impl& picture, const SlabPicture::Impl::Place& place) {
     constexpr double kWordsOfSlice = 16;
     const SlabInput& input = picture.inputOf(place);
     const SeenSlab& seen = picture.seenOf(place);
@@ -123,7 +124,7 @@ double workOf(const LayeredPicture::Impl& picture, const LayeredPicture::Impl::P
 // Cuts the slabs of a picture where their work passes each share of all.
 class SlabShares {
   public:
-    explicit SlabShares(const LayeredPicture::Impl& picture) {
+    explicit SlabShares(const SlabPicture::Impl& picture) {
         for (const auto& place : picture.slabs) {
             work_.push_back(workOf(picture, place));
             all_ += work_.back();
@@ -155,11 +156,11 @@ void check(const SlabShare& share) {
 
 }  // namespace
 
-void writeSlabPart(const LayeredPicture& picture, const SlabShare& share, const PartNotes& notes,
-                   const std::filesystem::path& file, const Listener& listener) {
+void writeSlabs(const SlabPicture& picture, const SlabShare& share, const PartNotes& notes,
+                const std::filesystem::path& file, const Listener& listener) {
     const DefaultFloats floats;
     check(share);
-    const LayeredPicture::Impl& all = picture.impl();
+    const SlabPicture::Impl& all = picture.impl();
     const SlabShares shares(all);
     const SplatOptions& options = all.scene.options();
     const PartHeader header{share,

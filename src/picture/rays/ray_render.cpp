@@ -306,8 +306,9 @@ void renderRays(const Volume& volume, const RenderOptions& options, const Listen
     checkRayOptions(options);
     const bool parallel = options.camera.projection == Projection::kOrtho;
     // Of pictures from an eye, where it goes from region to region, the middle's.
-    const Factorization view = factorize(result.camera, volume.worldFromIndex,
-                                         parallel ? options.resolution : std::optional<double>(1));
+    const Factorization view =
+        factorize(result.camera, volume.worldFromIndex,
+                  parallel ? options.splat.resolution : std::optional<double>(1));
     result.stats.sliceAxis = view.sliceAxis;
     result.stats.slices = volume.box.dims()[view.sliceAxis];
     if (!volume.empty()) {

@@ -1,5 +1,0 @@
-deltasplat_test(property/joined_test.cpp)
-deltasplat_test(property/identity_test.cpp)
-deltasplat_test(property/thin_test.cpp)
-deltasplat_test(property/cut_test.cpp)
-deltasplat_test(property/tolerance_test.cpp)

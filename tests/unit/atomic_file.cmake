@@ -1,1 +1,0 @@
-deltasplat_test(unit/atomic_file_test.cpp)

@@ -1,7 +1,0 @@
-deltasplat_test(unit/film_camera_test.cpp)
-deltasplat_test(unit/json_camera_test.cpp)
-deltasplat_test(unit/usd_camera_test.cpp)
-deltasplat_test(unit/exr_camera_test.cpp)
-deltasplat_test(unit/usd_volume_test.cpp)
-set(tools ${PROJECT_SOURCE_DIR}/tools)
-deltasplat_test(unit/poses_test.cpp SOURCES ${tools}/camera/poses.cpp ${tools}/options/parse.cpp)

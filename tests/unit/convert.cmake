@@ -1,6 +1,0 @@
-deltasplat_test(unit/dense_header_test.cpp)
-deltasplat_test(unit/drop_background_test.cpp)
-deltasplat_test(unit/half_exact_test.cpp)
-deltasplat_test(unit/write_vdb_test.cpp)
-deltasplat_test(unit/write_dense_test.cpp)
-deltasplat_test(unit/write_grids_test.cpp)

@@ -1,1 +1,0 @@
-deltasplat_test(unit/compare_volumes_test.cpp)

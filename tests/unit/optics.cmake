@@ -1,7 +1,0 @@
-deltasplat_test(unit/transfer_function_test.cpp)
-deltasplat_test(unit/read_transfer_function_test.cpp)
-deltasplat_test(unit/color_path_test.cpp)
-deltasplat_test(unit/presets_test.cpp)
-deltasplat_test(unit/blackbody_test.cpp)
-deltasplat_test(unit/class_table_test.cpp)
-deltasplat_test(unit/label_changes_test.cpp)
