@@ -63,8 +63,7 @@ void requireOther(const std::string& option, const std::filesystem::path& file, 
     refuseLog(option, file);
     for (const std::filesystem::path& other : others) {
         if (other.empty() || !sameFile(file, other)) continue;
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(option, file.string(), "another file than " + names));
+        throw Error(ErrorCode::kUsage, option, file.string(), "another file than " + names);
     }
 }
 
@@ -72,7 +71,7 @@ void refuseLog(const std::string& option, const std::filesystem::path& file) {
     const std::filesystem::path log = runLogFile();
     if (log.empty() || !sameFile(file, log)) return;
     dropRunLog();
-    throw Error(ErrorCode::kUsage, gotExpected(option, file.string(), "another file than --log"));
+    throw Error(ErrorCode::kUsage, option, file.string(), "another file than --log");
 }
 
 Files makeFolderOf(const std::filesystem::path& file) {

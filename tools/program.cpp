@@ -226,7 +226,7 @@ Error usageError(const CLI::App& app, const CLI::ParseError& problem) {
     const CLI::Option* const option = app.get_option_no_throw(name);
     if (option == nullptr || name == line) return Error(ErrorCode::kUsage, line);
     if (option->get_type_name().empty())
-        return Error(ErrorCode::kUsage, gotExpected(name, "a value", "none, it is a flag"));
+        return Error(ErrorCode::kUsage, name, "a value", "none, it is a flag");
     return nothingGiven(app, name, *option);
 }
 
@@ -326,8 +326,7 @@ int execute(const std::vector<std::string>& arguments,
     const Subcommand* const subcommand = parse(program, subcommands, arguments);
     if (subcommand == nullptr) return 0;
     if (session.common.jsonLog && session.common.log.empty()) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--json-log", "it without --log", "a file to add lines to"));
+        throw Error(ErrorCode::kUsage, "--json-log", "it without --log", "a file to add lines to");
     }
     if (!session.common.log.empty()) openRunLog(session.common.log, session.common.jsonLog);
     logLine(LogLevel::kInfo, session.commandLine);

@@ -17,19 +17,6 @@ enum class ErrorCode {
     kInterrupted  ///< stopped by the caller
 };
 
-/// The one exception the library throws on purpose. `what()` is one line without a final full stop:
-/// `<file or option>: got X; expected Y`. Here and in warnings and notes an option is named by the
-/// field or parameter that holds it, in backquotes, so that a program can put its own name there:
-/// "`tolerance.value`: got -1; expected a number >= 0".
-class Error : public std::runtime_error {
-  public:
-    Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
-    ErrorCode code() const noexcept { return code_; }
-
-  private:
-    ErrorCode code_;
-};
-
 /// Returns the line `where: got X; expected Y` used for every refused value.
 inline std::string gotExpected(std::string_view where, std::string_view got,
                                std::string_view expected) {
@@ -37,5 +24,21 @@ inline std::string gotExpected(std::string_view where, std::string_view got,
     line.append(": got ").append(got).append("; expected ").append(expected);
     return line;
 }
+
+/// The one exception the library throws on purpose. `what()` is one line without a final full stop:
+/// `<file or option>: got X; expected Y`. Here and in warnings and notes an option is named by the
+/// field or parameter that holds it, in backquotes, so that a program can put its own name there:
+/// "`tolerance.value`: got -1; expected a number >= 0".
+class Error : public std::runtime_error {
+  public:
+    Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+    /// As gotExpected says it.
+    Error(ErrorCode code, std::string_view where, std::string_view got, std::string_view expected)
+        : Error(code, gotExpected(where, got, expected)) {}
+    ErrorCode code() const noexcept { return code_; }
+
+  private:
+    ErrorCode code_;
+};
 
 }  // namespace deltasplat

@@ -24,9 +24,9 @@ void requireInvertible(const glm::dmat4& worldFromIndex) {
                         std::isfinite(origin.x + origin.y + origin.z);
     if (finite && volume > 1e-12 * box) return;
     const std::string size = finite && volume > 0 ? " and edges of " + numberText(edges) : "";
-    throw Error(ErrorCode::kInput,
-                gotExpected("worldFromIndex", "voxels of volume " + numberText(volume) + size,
-                            "a finite transform that can be inverted"));
+    throw Error(ErrorCode::kInput, "worldFromIndex",
+                "voxels of volume " + numberText(volume) + size,
+                "a finite transform that can be inverted");
 }
 
 WorldBox worldBox(const IndexBox& box, const glm::dmat4& worldFromIndex) {

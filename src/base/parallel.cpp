@@ -136,8 +136,7 @@ class HandOver {
 
 ThreadLimit::ThreadLimit(int threads) {
     if (threads < 0) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("threads", std::to_string(threads), "at least 0 (0 = all)"));
+        throw Error(ErrorCode::kUsage, "threads", std::to_string(threads), "at least 0 (0 = all)");
     }
     impl_ = std::make_shared<Impl>(threads == 0 ? hardwareThreads() : threads);
     threadLimits().add(impl_);

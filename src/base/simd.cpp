@@ -57,7 +57,7 @@ void setSimdLevel(const std::string& name) {
     }
     if (wanted == 0 && upper(name) != "AUTO") {
         hwy::SetSupportedTargetsForTest(chosenTarget());
-        throw Error(ErrorCode::kUsage, gotExpected("SIMD level", name, "one of " + known));
+        throw Error(ErrorCode::kUsage, "SIMD level", name, "one of " + known);
     }
     chosenTarget() = wanted;
     hwy::SetSupportedTargetsForTest(wanted);

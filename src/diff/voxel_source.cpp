@@ -243,8 +243,8 @@ template <typename Use>
 void withSource(const Volume& volume, const Use& use) {
     const TreeGrid& grid = volume.source->grid;
     if (grid.apply<ScalarTrees>(use)) return;
-    throw Error(ErrorCode::kInput, gotExpected("grid \"" + volume.name + "\"",
-                                               "type " + grid.type(), "a scalar grid"));
+    throw Error(ErrorCode::kInput, "grid \"" + volume.name + "\"", "type " + grid.type(),
+                "a scalar grid");
 }
 
 }  // namespace

@@ -85,9 +85,9 @@ struct AtomicFile::Impl {
 
     void requireAt(const std::string& name) const {
         if (!temporary->isAt(name)) {
-            throw Error(ErrorCode::kOutput,
-                        gotExpected(finalPath.string(), "another file in place of the one written",
-                                    "a folder in which others leave files alone"));
+            throw Error(ErrorCode::kOutput, finalPath.string(),
+                        "another file in place of the one written",
+                        "a folder in which others leave files alone");
         }
     }
 

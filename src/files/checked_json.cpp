@@ -50,10 +50,8 @@ nlohmann::ordered_json parseCheckedJson(const std::string& text, const std::stri
                                         const std::string& expected) {
     const Shape shape = shapeOf(text);
     if (shape.levels > kMostLevels) {
-        throw Error(
-            ErrorCode::kInput,
-            gotExpected(where, "JSON of more than " + std::to_string(kMostLevels) + " levels",
-                        expected));
+        throw Error(ErrorCode::kInput, where,
+                    "JSON of more than " + std::to_string(kMostLevels) + " levels", expected);
     }
     // A value, in a list that has grown to twice of what it holds while it is copied, and with a
     // list or a text of its own.
@@ -62,7 +60,7 @@ nlohmann::ordered_json parseCheckedJson(const std::string& text, const std::stri
     try {
         return nlohmann::ordered_json::parse(text);
     } catch (const nlohmann::ordered_json::exception&) {
-        throw Error(ErrorCode::kInput, gotExpected(where, "something else", expected));
+        throw Error(ErrorCode::kInput, where, "something else", expected);
     }
 }
 
@@ -74,8 +72,8 @@ nlohmann::ordered_json readCheckedJson(const std::filesystem::path& file,
     requireMemory(file.string(), double(bytes));
     std::string text(std::size_t(bytes), '\0');
     if (!in || !in.read(text.data(), std::streamsize(bytes))) {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(file.string(), "a file that cannot be read", "a readable file"));
+        throw Error(ErrorCode::kInput, file.string(), "a file that cannot be read",
+                    "a readable file");
     }
     return parseCheckedJson(text, file.string(), expected);
 }

@@ -26,9 +26,8 @@ FileBytes::FileBytes(const std::filesystem::path& file) : path_(file) {
     handle_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
     if (handle_ < 0) {
         const std::string reason = std::strerror(errno);
-        throw Error(ErrorCode::kInput,
-                    gotExpected(file.string(), "a file that cannot be opened (" + reason + ")",
-                                "a readable file"));
+        throw Error(ErrorCode::kInput, file.string(),
+                    "a file that cannot be opened (" + reason + ")", "a readable file");
     }
     size_ = std::filesystem::file_size(file);
     opened_ = state();
@@ -76,9 +75,8 @@ void FileBytes::requireUnchanged() const {
 }
 
 void FileBytes::throwChanged() const {
-    throw Error(ErrorCode::kInput,
-                gotExpected(path_.string(), "a file that was written to while it was read",
-                            "one that stays as it is"));
+    throw Error(ErrorCode::kInput, path_.string(), "a file that was written to while it was read",
+                "one that stays as it is");
 }
 
 std::size_t FileBytes::read(std::uint64_t place, void* to, std::size_t bytes) const {
@@ -94,8 +92,7 @@ std::size_t FileBytes::read(std::uint64_t place, void* to, std::size_t bytes) co
             ::pread(handle_, static_cast<char*>(to) + done, bytes - done, off_t(place + done));
         if (got < 0 && errno == EINTR) continue;
         if (got < 0) {
-            throw Error(ErrorCode::kInput,
-                        gotExpected(path_.string(), "a read error", "a readable file"));
+            throw Error(ErrorCode::kInput, path_.string(), "a read error", "a readable file");
         }
         if (got == 0) break;
         done += std::size_t(got);

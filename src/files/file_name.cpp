@@ -36,18 +36,16 @@ void requireRegularFile(const std::filesystem::path& file) {
     const std::string expected = "a readable file";
     if (error && !std::filesystem::exists(status) &&
         status.type() != std::filesystem::file_type::not_found) {
-        throw Error(
-            ErrorCode::kInput,
-            gotExpected(file.string(), "a file that cannot be opened (" + error.message() + ")",
-                        expected));
+        throw Error(ErrorCode::kInput, file.string(),
+                    "a file that cannot be opened (" + error.message() + ")", expected);
     }
     if (!std::filesystem::exists(status)) {
-        throw Error(ErrorCode::kInput, gotExpected(file.string(), "no such file", expected));
+        throw Error(ErrorCode::kInput, file.string(), "no such file", expected);
     }
     if (!std::filesystem::is_regular_file(status)) {
         const bool folder = std::filesystem::is_directory(status);
-        throw Error(ErrorCode::kInput,
-                    gotExpected(file.string(), folder ? "a folder" : "no regular file", expected));
+        throw Error(ErrorCode::kInput, file.string(), folder ? "a folder" : "no regular file",
+                    expected);
     }
 }
 

@@ -11,7 +11,7 @@ namespace deltasplat {
 /// @throw Error(kInput) "<file>: got ...; expected ..."
 [[noreturn]] inline void refuseFile(const std::filesystem::path& file, const std::string& got,
                                     const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
+    throw Error(ErrorCode::kInput, file.string(), got, expected);
 }
 
 /// Returns the file's extension in lower case, a ".gz" before it kept: ".raw", ".raw.gz", ".vdb".

@@ -35,7 +35,7 @@ Unpacker::~Unpacker() {
 }
 
 void Unpacker::refuse(const std::string& got, const std::string& expected) const {
-    throw Error(ErrorCode::kInput, gotExpected(file_.path().string(), got, expected));
+    throw Error(ErrorCode::kInput, file_.path().string(), got, expected);
 }
 
 // Returns whether there are packed bytes left.

@@ -12,13 +12,12 @@ std::int64_t chooseVolume(const std::string& where, const std::string& axes, std
     const std::string held =
         std::to_string(count) + (count == 1 ? " volume (" : " volumes (") + axes + ")";
     if (!chosen && count > 1) {
-        throw Error(ErrorCode::kInput, gotExpected(where, held, "one, chosen by " + which));
+        throw Error(ErrorCode::kInput, where, held, "one, chosen by " + which);
     }
     const std::int64_t volume = chosen.value_or(0);
     if (volume >= 0 && volume < count) return volume;
-    throw Error(
-        ErrorCode::kInput,
-        gotExpected(where, "no volume " + std::to_string(volume) + " among " + held, which));
+    throw Error(ErrorCode::kInput, where, "no volume " + std::to_string(volume) + " among " + held,
+                which);
 }
 
 }  // namespace deltasplat

@@ -90,10 +90,9 @@ void requireInFolderOf(const fs::path& input, const std::vector<fs::path>& files
     const fs::path folder = folderOf(input);
     for (const fs::path& file : files) {
         if (isWithin(folder, file)) continue;
-        throw Error(ErrorCode::kInput,
-                    gotExpected(input.string(),
-                                "the file " + printable(file.string()) + " outside of its folder",
-                                "files inside of it (`confineInputs`)"));
+        throw Error(ErrorCode::kInput, input.string(),
+                    "the file " + printable(file.string()) + " outside of its folder",
+                    "files inside of it (`confineInputs`)");
     }
 }
 
@@ -102,10 +101,9 @@ void requireInFolderOf(const fs::path& input, const std::vector<fs::path>& files
 void requireFoundIn(const std::filesystem::path& folder, const std::filesystem::path& input) {
     const fs::path base = folder.empty() ? "." : folder;
     if (!inputsAreConfined() || isWithin(base, folderOf(input))) return;
-    throw Error(ErrorCode::kInput, gotExpected(input.string(),
-                                               "a folder outside of " + printable(base.string()) +
-                                                   ", in which the pattern looks",
-                                               "folders inside of it (`confineInputs`)"));
+    throw Error(ErrorCode::kInput, input.string(),
+                "a folder outside of " + printable(base.string()) + ", in which the pattern looks",
+                "folders inside of it (`confineInputs`)");
 }
 
 void requireConfined(const std::filesystem::path& input) {

@@ -24,7 +24,7 @@ constexpr const char* kWhere = "volume in memory";
 
 [[noreturn]] void refuse(const std::string& what, const std::string& got,
                          const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected(std::string(kWhere) + ": " + what, got, expected));
+    throw Error(ErrorCode::kUsage, std::string(kWhere) + ": " + what, got, expected);
 }
 
 template <typename T>

@@ -28,14 +28,13 @@ Volume makeVolume(const openvdb::GridBase::ConstPtr& grid, const ReadOptions& op
                   const Listener& listener) {
     const DefaultFloats floats;
     const std::string where = "OpenVDB grid";
-    if (!grid) throw Error(ErrorCode::kUsage, gotExpected(where, "none", "a grid"));
+    if (!grid) throw Error(ErrorCode::kUsage, where, "none", "a grid");
     openvdb::initialize();
     requireFiniteNan(options);
     const TreeGrid given = fromOpenVdb(grid);
     if (isDeltaGrid(given)) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(where, "the differences of a delta grid",
-                                "the volume itself: readVolume reads a delta grid's file"));
+        throw Error(ErrorCode::kUsage, where, "the differences of a delta grid",
+                    "the volume itself: readVolume reads a delta grid's file");
     }
     const bool changes = isChanged(*grid, options);
     if (changes) requireMemory(where, double(grid->memUsage()));
@@ -55,9 +54,8 @@ Volume makeVolume(const openvdb::GridBase::ConstPtr& grid, const ReadOptions& op
 openvdb::GridBase::ConstPtr makeGrid(const Volume& volume) {
     const DefaultFloats floats;
     if (!volume.codes) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("OpenVDB grid to make", "a volume without voxels",
-                                "one that was read or made"));
+        throw Error(ErrorCode::kUsage, "OpenVDB grid to make", "a volume without voxels",
+                    "one that was read or made");
     }
     const bool wasGiven = volume.source && volume.source->given && volume.hasBackground;
     return wasGiven ? volume.source->given : toOpenVdb(gridOf(volume));

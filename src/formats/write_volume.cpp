@@ -22,18 +22,16 @@ bool isVdb(const std::filesystem::path& file) {
 const DenseFormat& formatOf(const std::filesystem::path& file) {
     const std::string extension = lowerExtension(file);
     if (const DenseFormat* format = findDenseFormat(extension)) return *format;
-    throw Error(
-        ErrorCode::kUsage,
-        gotExpected(file.string(), "extension \"" + extension + "\"",
-                    ".vdb, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .raw or .raw.gz"));
+    throw Error(ErrorCode::kUsage, file.string(), "extension \"" + extension + "\"",
+                ".vdb, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .raw or .raw.gz");
 }
 
 // Headers are lines of text, and MetaImage takes "%" for the place of a slice's number.
 void requireWritableName(const std::filesystem::path& dataFile) {
     const std::string name = dataFile.filename().string();
     if (printable(name) == name && name.find('%') == std::string::npos) return;
-    throw Error(ErrorCode::kUsage, gotExpected(name, "a name with \"%\" or control characters",
-                                               "one that a header can hold"));
+    throw Error(ErrorCode::kUsage, name, "a name with \"%\" or control characters",
+                "one that a header can hold");
 }
 
 }  // namespace
@@ -59,9 +57,8 @@ WriteReport writeVolumes(const std::filesystem::path& file, std::vector<Volume> 
     if (isVdb(file)) return writeGrids(file, std::move(volumes), options, listener);
     const DenseFormat& format = formatOf(file);
     if (volumes.size() != 1) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(file.string(), std::to_string(volumes.size()) + " volumes",
-                                "one, except in a .vdb"));
+        throw Error(ErrorCode::kUsage, file.string(), std::to_string(volumes.size()) + " volumes",
+                    "one, except in a .vdb");
     }
     return writeDense(file, format, volumes.front(), listener);
 }

@@ -109,8 +109,8 @@ class RowsFile : public ExrRowsFile {
              const ImageFileOptions& options)
         : file_(path), asFloat_(options.floatExr), stream_(path, file_.descriptor()) {
         if (file_.isDevice()) {
-            throw Error(ErrorCode::kOutput,
-                        gotExpected(path.string(), "a device", "a file, for a picture in parts"));
+            throw Error(ErrorCode::kOutput, path.string(), "a device",
+                        "a file, for a picture in parts");
         }
         writeExr(path, [&] {
             Imf::Header header = exrHeader(options, sizePixels, box, "zip");

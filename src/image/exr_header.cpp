@@ -14,6 +14,7 @@
 #include <mutex>
 #include <optional>
 
+#include "base/refuse.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/image/exr_options.h"
@@ -23,22 +24,18 @@ namespace deltasplat {
 
 namespace {
 
-[[noreturn]] void refuse(const char* option, const std::string& got, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
-}
-
 void checkLevel(const ExrOptions& options) {
     if (!options.level) return;
     const std::string& name = options.compression;
     const std::string got = name + ":" + numberText(*options.level);
     const bool isZip = name.empty() || name == "zip" || name == "zips";
     if (!isZip && name != "dwaa" && name != "dwab")
-        refuse("`compression`", got, "a level with zip, zips, dwaa or dwab alone");
+        refuseUsage("`compression`", got, "a level with zip, zips, dwaa or dwab alone");
     if (isZip && !(*options.level >= 1 && *options.level <= 9 &&
                    *options.level == std::floor(*options.level)))
-        refuse("`compression`", got, "a level that is a whole number within 1..9");
+        refuseUsage("`compression`", got, "a level that is a whole number within 1..9");
     if (!(*options.level >= 0 && *options.level <= 1e6))
-        refuse("`compression`", got, "a level within 0..1000000");
+        refuseUsage("`compression`", got, "a level within 0..1000000");
 }
 
 std::string namesText() {
@@ -61,15 +58,16 @@ void checkExrOptions(const ExrOptions& options, bool isDeep) {
     const std::string& name = options.compression;
     const std::vector<std::string>& names = exrCompressions();
     if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
-        refuse("`compression`", name, namesText());
+        refuseUsage("`compression`", name, namesText());
     // OpenEXR has none and rle for these as well, which pack worse.
     if (isDeep && !name.empty() && name != "zips")
-        refuse("`compression`", name + " of a deep picture", "zips");
+        refuseUsage("`compression`", name + " of a deep picture", "zips");
     checkLevel(options);
     if (!(options.pixelAspect >= 1e-6 && options.pixelAspect <= 1e6))
-        refuse("pixel aspect", numberText(options.pixelAspect), "a number within 1e-06..1e+06");
+        refuseUsage("pixel aspect", numberText(options.pixelAspect),
+                    "a number within 1e-06..1e+06");
     if (options.displaySize && (options.displaySize->x < 1 || options.displaySize->y < 1))
-        refuse("display window", dimsText(*options.displaySize), "WxH, each at least 1");
+        refuseUsage("display window", dimsText(*options.displaySize), "WxH, each at least 1");
 }
 
 namespace {

@@ -20,7 +20,7 @@ ExrRows::ExrRows(const std::filesystem::path& file, glm::ivec2 sizePixels, const
                  const ImageFileOptions& options) {
     const DefaultFloats floats;
     const auto refuse = [&](const std::string& got, const std::string& expected) {
-        throw Error(ErrorCode::kUsage, gotExpected(file.string(), got, expected));
+        throw Error(ErrorCode::kUsage, file.string(), got, expected);
     };
     if (imageFormatOf(file) != ImageFormat::kExr) refuse("a picture in parts", "an .exr file");
     if (!options.channels.empty()) refuse("other channels besides", "a picture alone");
@@ -37,8 +37,8 @@ void ExrRows::write(const Image& rows) {
     const DefaultFloats floats;
     const glm::ivec2 left(impl_->box.size().x, impl_->box.size().y - impl_->done);
     if (rows.size.x != left.x || rows.size.y > left.y || rows.size.y < 1) {
-        throw Error(ErrorCode::kUsage, gotExpected("rows of a picture", dimsText(rows.size),
-                                                   "some of " + dimsText(left)));
+        throw Error(ErrorCode::kUsage, "rows of a picture", dimsText(rows.size),
+                    "some of " + dimsText(left));
     }
     impl_->file->write(rows);
     impl_->done += rows.size.y;
@@ -46,8 +46,8 @@ void ExrRows::write(const Image& rows) {
 
 void ExrRows::finish() {
     if (impl_->done != impl_->box.size().y) {
-        throw Error(ErrorCode::kUsage, gotExpected("rows of a picture", std::to_string(impl_->done),
-                                                   std::to_string(impl_->box.size().y)));
+        throw Error(ErrorCode::kUsage, "rows of a picture", std::to_string(impl_->done),
+                    std::to_string(impl_->box.size().y));
     }
     impl_->file->finish();
 }

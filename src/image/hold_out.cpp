@@ -32,9 +32,8 @@ glm::vec4 cutAt(const DeepSample& sample, float depth) {
 Image holdOut(const DeepImage& deep, const DepthImage& solid) {
     const DefaultFloats floats;
     if (deep.size != solid.size) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("depths of solid things", dimsText(solid.size) + " pixels",
-                                dimsText(deep.size) + ", those of the picture"));
+        throw Error(ErrorCode::kUsage, "depths of solid things", dimsText(solid.size) + " pixels",
+                    dimsText(deep.size) + ", those of the picture");
     }
     Image image(deep.size);
     parallelFor(std::size_t(deep.size.y), [&](std::size_t y) {

@@ -104,9 +104,8 @@ void expose(Image& image, double exposureStops) {
     const DefaultFloats floats;
     if (!(std::abs(exposureStops) <= kMaxExposureStops)) {
         const std::string most = numberText(kMaxExposureStops);
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("`exposureStops`", numberText(exposureStops),
-                                "a finite number from -" + most + " to " + most));
+        throw Error(ErrorCode::kUsage, "`exposureStops`", numberText(exposureStops),
+                    "a finite number from -" + most + " to " + most);
     }
     constexpr double kMost = std::numeric_limits<float>::max();
     const double scale = powerOfTwo(exposureStops);

@@ -27,7 +27,7 @@ constexpr double kEncodedCopies = 2;
 
 void requireExr(const std::filesystem::path& file) {
     if (imageFormatOf(file) == ImageFormat::kExr) return;
-    throw Error(ErrorCode::kUsage, gotExpected(file.string(), "a deep picture", "an .exr file"));
+    throw Error(ErrorCode::kUsage, file.string(), "a deep picture", "an .exr file");
 }
 
 }  // namespace
@@ -45,8 +45,8 @@ std::string encodeDeepImage(const std::filesystem::path& file, const DeepImage& 
     requireExr(file);
     checkExrOptions(options.exr, true);
     if (image.size.x < 1 || image.size.y < 1) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(file.string(), dimsText(image.size) + " pixels", "at least 1x1"));
+        throw Error(ErrorCode::kUsage, file.string(), dimsText(image.size) + " pixels",
+                    "at least 1x1");
     }
     const double sampleBytes = options.floatExr ? 24 : 16;
     requireMemory(file.string() + ", " + std::to_string(image.samples()) + " samples",
@@ -72,11 +72,10 @@ void checkRegion(const ImageFileOptions& options, glm::ivec2 size) {
     if (!part.empty() && part.min.x >= 0 && part.min.y >= 0 && part.max.x <= size.x &&
         part.max.y <= size.y)
         return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("`region`",
-                            dimsText(part.size()) + " pixels from " + std::to_string(part.min.x) +
-                                "," + std::to_string(part.min.y) + " on",
-                            "all of them among the picture's " + dimsText(size)));
+    throw Error(ErrorCode::kUsage, "`region`",
+                dimsText(part.size()) + " pixels from " + std::to_string(part.min.x) + "," +
+                    std::to_string(part.min.y) + " on",
+                "all of them among the picture's " + dimsText(size));
 }
 
 void checkOptions(const std::filesystem::path& file, glm::ivec2 size,
@@ -84,37 +83,35 @@ void checkOptions(const std::filesystem::path& file, glm::ivec2 size,
     const ImageFormat format = imageFormatOf(file);
     const bool isJpeg = format == ImageFormat::kJpeg;
     if (options.bits != 8 && (options.bits != 16 || isJpeg)) {
-        throw Error(ErrorCode::kUsage, gotExpected("`bits`", std::to_string(options.bits),
-                                                   isJpeg ? "8 in a .jpg" : "8 or 16"));
+        throw Error(ErrorCode::kUsage, "`bits`", std::to_string(options.bits),
+                    isJpeg ? "8 in a .jpg" : "8 or 16");
     }
     if (!options.channels.empty() && format != ImageFormat::kExr) {
-        throw Error(ErrorCode::kUsage, gotExpected("`channels`", file.string(), "an .exr file"));
+        throw Error(ErrorCode::kUsage, "`channels`", file.string(), "an .exr file");
     }
     for (const ImageChannel& channel : options.channels) {
         const std::size_t pixels = std::size_t(size.x) * std::size_t(size.y);
         if (channel.values.size() == pixels) continue;
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("`channels` " + channel.name,
-                                std::to_string(channel.values.size()) + " values",
-                                std::to_string(pixels) + ", one for each pixel"));
+        throw Error(ErrorCode::kUsage, "`channels` " + channel.name,
+                    std::to_string(channel.values.size()) + " values",
+                    std::to_string(pixels) + ", one for each pixel");
     }
     checkRegion(options, size);
     if (isOfNumbers(format) && !options.numbers) {
-        throw Error(ErrorCode::kUsage, gotExpected(file.string(), "a picture of colours",
-                                                   "one of numbers, or .exr, .png, .tif or .jpg"));
+        throw Error(ErrorCode::kUsage, file.string(), "a picture of colours",
+                    "one of numbers, or .exr, .png, .tif or .jpg");
     }
     const bool holdsNumbers =
         options.numbers && (isOfNumbers(format) || format == ImageFormat::kTiff);
     if (options.floatExr && format != ImageFormat::kExr && !holdsNumbers) {
-        throw Error(ErrorCode::kUsage, gotExpected("`floatExr`", file.string(), "an .exr file"));
+        throw Error(ErrorCode::kUsage, "`floatExr`", file.string(), "an .exr file");
     }
     if (format == ImageFormat::kExr) checkExrOptions(options.exr, false);
     const int most = maxSide(format);
     if (size.x > most || size.y > most) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("`image.size`", dimsText(size),
-                                "sides of at most " + std::to_string(most) + " pixels in a " +
-                                    lowerCase(file.extension().string())));
+        throw Error(ErrorCode::kUsage, "`image.size`", dimsText(size),
+                    "sides of at most " + std::to_string(most) + " pixels in a " +
+                        lowerCase(file.extension().string()));
     }
 }
 
@@ -145,9 +142,8 @@ ImageFormat imageFormatOf(const std::filesystem::path& file) {
     if (extension == ".npy") return ImageFormat::kNpy;
     if (extension == ".nrrd") return ImageFormat::kNrrd;
     if (extension == ".mha") return ImageFormat::kMetaImage;
-    throw Error(ErrorCode::kUsage,
-                gotExpected(file.string(), "extension \"" + file.extension().string() + "\"",
-                            ".exr, .png, .tif or .jpg (numbers: .npy, .nrrd or .mha)"));
+    throw Error(ErrorCode::kUsage, file.string(), "extension \"" + file.extension().string() + "\"",
+                ".exr, .png, .tif or .jpg (numbers: .npy, .nrrd or .mha)");
 }
 
 bool isOfNumbers(ImageFormat format) {
@@ -167,7 +163,7 @@ std::string encodeImage(const std::filesystem::path& file, const Image& image,
     checkOptions(file, image.size, options);
     if (image.size.x < 1 || image.size.y < 1) {
         const std::string got = dimsText(image.size) + " pixels";
-        throw Error(ErrorCode::kUsage, gotExpected(file.string(), got, "at least 1x1"));
+        throw Error(ErrorCode::kUsage, file.string(), got, "at least 1x1");
     }
     const ImageFormat format = imageFormatOf(file);
     if (format == ImageFormat::kExr) return encodeExr(file, image, options);

@@ -18,6 +18,7 @@
 #include "base/default_floats.h"
 #include "base/parallel.h"
 #include "base/portable_math.h"
+#include "base/refuse.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/environment.h"
@@ -210,21 +211,16 @@ Light lightFrom(const Cells& cells, const Region& region, const glm::dmat3& worl
     return light;
 }
 
-[[noreturn]] void refuse(const std::string& option, const std::string& got,
-                         const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
-}
-
 void requireSound(const Environment& environment, int count) {
-    if (count < 1) refuse("`count`", std::to_string(count) + " lights", "1 or more");
+    if (count < 1) refuseUsage("`count`", std::to_string(count) + " lights", "1 or more");
     const glm::ivec2 size = environment.sizePixels;
     const std::string text = std::to_string(size.x) + "x" + std::to_string(size.y);
     if (size.y < 1 || size.x != 2 * std::int64_t{size.y}) {
-        refuse("`sizePixels`", text, "twice as wide as high");
+        refuseUsage("`sizePixels`", text, "twice as wide as high");
     }
     if (environment.rgb.size() != 3 * std::size_t(size.x) * std::size_t(size.y)) {
-        refuse("`rgb`", std::to_string(environment.rgb.size()) + " values",
-               "three for each of " + text + " pixels");
+        refuseUsage("`rgb`", std::to_string(environment.rgb.size()) + " values",
+                    "three for each of " + text + " pixels");
     }
     const glm::dmat3& turn = environment.worldFromEnvironment;
     const glm::dmat3 product = glm::transpose(turn) * turn;
@@ -234,7 +230,7 @@ void requireSound(const Environment& environment, int count) {
             rotates = rotates && std::abs(product[column][row] - (row == column)) < 1e-6;
         }
     }
-    if (!rotates) refuse("`worldFromEnvironment`", "no rotation", "a rotation");
+    if (!rotates) refuseUsage("`worldFromEnvironment`", "no rotation", "a rotation");
 }
 
 }  // namespace
@@ -247,10 +243,9 @@ std::vector<Light> cutIntoLights(const Environment& environment, int count) {
     for (const Region& region : cutIntoRegions(cells, count)) {
         const Light light = lightFrom(cells, region, environment.worldFromEnvironment);
         if (!(light.strength <= kMostLight)) {
-            throw Error(
-                ErrorCode::kInput,
-                gotExpected("environment", "a light of strength " + numberText(light.strength),
-                            "at most " + numberText(kMostLight)));
+            throw Error(ErrorCode::kInput, "environment",
+                        "a light of strength " + numberText(light.strength),
+                        "at most " + numberText(kMostLight));
         }
         if (light.strength > 0) lights.push_back(light);
     }

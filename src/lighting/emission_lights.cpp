@@ -211,10 +211,9 @@ Light lightOf(const Group& group, const Glow& glow, double perGlow, double voxel
     light.radiusWorld = std::sqrt(5.0 / 9 * square);
     const double most = std::max({light.color.r, light.color.g, light.color.b});
     if (!(most <= kMostLight)) {
-        throw Error(
-            ErrorCode::kInput,
-            gotExpected("emission", "a light of strength " + numberText(light.strength * most),
-                        "at most " + numberText(kMostLight * kMostLight)));
+        throw Error(ErrorCode::kInput, "emission",
+                    "a light of strength " + numberText(light.strength * most),
+                    "at most " + numberText(kMostLight * kMostLight));
     }
     return light;
 }
@@ -224,8 +223,7 @@ Light lightOf(const Group& group, const Glow& glow, double perGlow, double voxel
 std::vector<Light> emissionLights(const Volume& volume, const Optics& optics, int count) {
     const DefaultFloats floats;
     if (count < 1) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("`emissionLights`", std::to_string(count), "1 or more"));
+        throw Error(ErrorCode::kUsage, "`emissionLights`", std::to_string(count), "1 or more");
     }
     const Glow glow(volume, optics);
     const glm::dmat3 voxel(volume.worldFromIndex);

@@ -23,6 +23,7 @@
 #include "base/default_floats.h"
 #include "base/parallel.h"
 #include "base/portable_math.h"
+#include "base/refuse.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/sky.h"
@@ -45,20 +46,15 @@ struct Place {
     double zenithAngle;     // of the sun, 0..pi
 };
 
-[[noreturn]] void refuse(const std::string& option, const std::string& got,
-                         const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
-}
-
 void requireRange(const std::string& option, double number, double least, double most) {
     if (number >= least && number <= most) return;
-    refuse(option, numberText(number), numberText(least) + ".." + numberText(most));
+    refuseUsage(option, numberText(number), numberText(least) + ".." + numberText(most));
 }
 
 glm::dvec3 unitOf(const std::string& option, const glm::dvec3& way) {
     const double size = std::max({std::abs(way.x), std::abs(way.y), std::abs(way.z)});
     const bool finite = std::isfinite(way.x) && std::isfinite(way.y) && std::isfinite(way.z);
-    if (!finite || !(size > 0)) refuse(option, numberText(way), "a direction");
+    if (!finite || !(size > 0)) refuseUsage(option, numberText(way), "a direction");
     return unitVectorOf(way);
 }
 
@@ -202,8 +198,8 @@ Environment skyEnvironment(const Sky& sky) {
     const DefaultFloats floats;
     const Place place = placeOf(sky);
     if (!isUp(place)) {
-        refuse("`towardsSun`", numberText(sky.towardsSun) + ", below the horizon",
-               "a sun above it: of twilight nothing is known");
+        refuseUsage("`towardsSun`", numberText(sky.towardsSun) + ", below the horizon",
+                    "a sun above it: of twilight nothing is known");
     }
     Environment environment;
     environment.sizePixels = {2 * kHeight, kHeight};

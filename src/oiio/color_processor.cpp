@@ -21,6 +21,7 @@
 
 #include "base/in_child.h"
 #include "base/parallel.h"
+#include "base/refuse.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/image/color_management.h"
@@ -93,21 +94,16 @@ std::string listOf(const std::vector<std::string>& names) {
     return text.empty() ? "a configuration that has some" : "one of " + text;
 }
 
-[[noreturn]] void refuse(const char* option, const std::string& got, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
-}
-
 void requireOneOf(const char* option, const std::string& name,
                   const std::vector<std::string>& names) {
     if (std::find(names.begin(), names.end(), name) == names.end())
-        refuse(option, printable(name), listOf(names));
+        refuseUsage(option, printable(name), listOf(names));
 }
 
 void requireFile(const std::filesystem::path& file) {
     std::error_code ignored;
     if (!file.empty() && !std::filesystem::is_regular_file(file, ignored)) {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(file.string(), "no such file", "a readable file"));
+        throw Error(ErrorCode::kInput, file.string(), "no such file", "a readable file");
     }
 }
 
@@ -134,10 +130,9 @@ class Processor : public ColorProcessor {
         const bool isNone = options_.config.empty() && !std::getenv("OCIO");
         if (isNone) config_.geterror();
         if (config_.has_error()) {
-            throw Error(
-                ErrorCode::kInput,
-                gotExpected(options_.config.empty() ? "$OCIO" : options_.config.string(),
-                            complaint(config_.geterror()), "a configuration of OpenColorIO"));
+            throw Error(ErrorCode::kInput,
+                        options_.config.empty() ? "$OCIO" : options_.config.string(),
+                        complaint(config_.geterror()), "a configuration of OpenColorIO");
         }
         working_ = workingSpaceOf(config_, options_);
         if (!options_.colorSpace.empty()) {
@@ -209,9 +204,8 @@ class Processor : public ColorProcessor {
             if (OIIO::ColorProcessorHandle made = create()) return made;
             reason = config.geterror();
         }
-        throw Error(ErrorCode::kInput,
-                    gotExpected(option, printable(name) + ": " + complaint(reason),
-                                "what OpenColorIO can make a transform of"));
+        throw Error(ErrorCode::kInput, option, printable(name) + ": " + complaint(reason),
+                    "what OpenColorIO can make a transform of");
     }
 
     void apply(const OIIO::ColorProcessorHandle& processor, Image& image) const {

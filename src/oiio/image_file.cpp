@@ -35,8 +35,8 @@ using OIIO::ImageSpec;
     const std::string reason = complaint.empty()
                                    ? "no reason given"
                                    : printable(complaint.substr(0, complaint.find('\n')));
-    throw Error(ErrorCode::kInput,
-                gotExpected(file.string(), "what OpenImageIO refuses (" + reason + ")", expected));
+    throw Error(ErrorCode::kInput, file.string(), "what OpenImageIO refuses (" + reason + ")",
+                expected);
 }
 
 std::unique_ptr<ImageInput> openInput(const std::filesystem::path& file,
@@ -80,22 +80,21 @@ void requireSane(const std::filesystem::path& file, const ImageSpec& spec) {
     // OpenImageIO says that it has read them, and leaves zeros.
     const bool isOneByOne = spec.tile_width > 0 || spec.height == 1;
     if (isTiffName(file) && isOneByOne && spec.format.size() == 8) {
-        throw Error(ErrorCode::kInput, gotExpected(file.string(),
-                                                   "64-bit numbers in tiles or one row, which "
-                                                   "OpenImageIO cannot read",
-                                                   "float32, or strips of an image of more rows"));
+        throw Error(ErrorCode::kInput, file.string(),
+                    "64-bit numbers in tiles or one row, which "
+                    "OpenImageIO cannot read",
+                    "float32, or strips of an image of more rows");
     }
     const bool flat = spec.depth <= 1 && !spec.deep;
     if (!flat || spec.width < 1 || spec.height < 1 || spec.nchannels < 1) {
         const std::string got = sizeText(spec) + (spec.deep ? ", deep" : "");
-        throw Error(ErrorCode::kInput, gotExpected(file.string(), got, "a flat image with pixels"));
+        throw Error(ErrorCode::kInput, file.string(), got, "a flat image with pixels");
     }
     const double bytes = double(spec.width) * spec.height * spec.nchannels;
     const double held = double(std::filesystem::file_size(file));
     if (isEnough(held, mostRatio(packingOf(file, spec)), bytes)) return;
-    throw Error(ErrorCode::kInput,
-                gotExpected(file.string(), std::to_string(std::uint64_t(held)) + " bytes",
-                            "enough for " + sizeText(spec)));
+    throw Error(ErrorCode::kInput, file.string(), std::to_string(std::uint64_t(held)) + " bytes",
+                "enough for " + sizeText(spec));
 }
 
 /// A file some of whose bytes are others for who reads it.

@@ -203,9 +203,8 @@ std::vector<OmePicture> readOme(const std::filesystem::path& file, const std::st
             if (!pixels.attributes.contains(name)) return std::int64_t{1};
             const auto number = numberOf<std::int64_t>(pixels.attributes, name);
             if (number && *number >= 1 && *number <= kMostPlanes) return *number;
-            throw Error(ErrorCode::kInput,
-                        gotExpected(where, name + (" " + printable(pixels.attributes.at(name))),
-                                    "a number of planes"));
+            throw Error(ErrorCode::kInput, where,
+                        name + (" " + printable(pixels.attributes.at(name))), "a number of planes");
         };
         picture.slices = size("SizeZ");
         picture.channels = size("SizeC");
@@ -217,8 +216,8 @@ std::vector<OmePicture> readOme(const std::filesystem::path& file, const std::st
             double(picture.slices) * double(picture.channels) * double(picture.times);
         planes += ofPicture;
         if (planes > double(kMostPlanes))
-            throw Error(ErrorCode::kInput, gotExpected(where, numberText(planes) + " planes",
-                                                       "at most " + std::to_string(kMostPlanes)));
+            throw Error(ErrorCode::kInput, where, numberText(planes) + " planes",
+                        "at most " + std::to_string(kMostPlanes));
         picture.pages.assign(std::size_t(ofPicture), -1);
         setSpacing(pixels.attributes, picture);
         setPages(pixels, own, picture);

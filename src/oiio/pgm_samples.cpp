@@ -12,16 +12,12 @@
 #include "base/memory.h"
 #include "deltasplat/error.h"
 #include "files/file_bytes.h"
+#include "files/file_name.h"
 
 namespace deltasplat {
 namespace {
 
 constexpr std::uint32_t kMost = 65535;
-
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& got,
-                       const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
-}
 
 // Takes numbers from the front of a file's bytes.
 class Numbers {
@@ -36,15 +32,16 @@ class Numbers {
             if (byte == '#') {
                 while (place_ < bytes_.size() && bytes_[place_] != '\n') ++place_;
             } else if (!std::isspace(byte)) {
-                fail(file_, "a byte " + std::to_string(byte) + " where a number should be",
-                     "a whole .pgm image");
+                refuseFile(file_, "a byte " + std::to_string(byte) + " where a number should be",
+                           "a whole .pgm image");
             }
         }
-        if (place_ == bytes_.size()) fail(file_, "a file that is cut short", "a whole .pgm image");
+        if (place_ == bytes_.size())
+            refuseFile(file_, "a file that is cut short", "a whole .pgm image");
         std::uint64_t number = 0;
         for (; place_ < bytes_.size() && std::isdigit(bytes_[place_]); ++place_) {
             number = 10 * number + (bytes_[place_] - '0');
-            if (number > 0xffffffff) fail(file_, "a number of many digits", "a .pgm image");
+            if (number > 0xffffffff) refuseFile(file_, "a number of many digits", "a .pgm image");
         }
         return std::uint32_t(number);
     }
@@ -89,20 +86,21 @@ void readPgm(const std::filesystem::path& file, std::size_t pixels, std::span<st
     numbers.skip(2);
     const std::uint64_t size = std::uint64_t{numbers.next()} * numbers.next();
     const std::uint32_t most = numbers.next();
-    if (size != pixels) fail(file, std::to_string(size) + " pixels", std::to_string(pixels));
+    if (size != pixels) refuseFile(file, std::to_string(size) + " pixels", std::to_string(pixels));
     if (most < 1 || most > kMost) {
-        fail(file, "samples up to " + std::to_string(most),
-             "at most " + std::to_string(kMost) + ", at least 1");
+        refuseFile(file, "samples up to " + std::to_string(most),
+                   "at most " + std::to_string(kMost) + ", at least 1");
     }
     const std::size_t width = most < 256 ? 1 : 2;
     if (to.size() != pixels * width) {
-        fail(file, std::to_string(width) + " bytes a sample", std::to_string(to.size() / pixels));
+        refuseFile(file, std::to_string(width) + " bytes a sample",
+                   std::to_string(to.size() / pixels));
     }
     std::vector<unsigned char> raster;
     if (isBinary) {
         raster = read(numbers.place() + 1, pixels * width);
         if (raster.size() < pixels * width)
-            fail(file, "a file that is cut short", "a whole .pgm image");
+            refuseFile(file, "a file that is cut short", "a whole .pgm image");
     }
     const unsigned char* next = raster.data();
     for (std::size_t i = 0; i < pixels; ++i) {
@@ -113,8 +111,8 @@ void readPgm(const std::filesystem::path& file, std::size_t pixels, std::span<st
             for (std::size_t n = 0; n < width; ++n) sample = sample << 8 | *next++;
         }
         if (sample > most) {
-            fail(file, "a sample of " + std::to_string(sample),
-                 "at most " + std::to_string(most) + ", as its header says");
+            refuseFile(file, "a sample of " + std::to_string(sample),
+                       "at most " + std::to_string(most) + ", as its header says");
         }
         put(sample, width, to.data() + i * width);
     }

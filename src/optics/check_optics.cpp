@@ -15,7 +15,7 @@ namespace {
 
 void requireThat(bool holds, const std::string& option, const std::string& got,
                  const std::string& expected) {
-    if (!holds) throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
+    if (!holds) throw Error(ErrorCode::kUsage, option, got, expected);
 }
 
 template <typename Point>

@@ -17,13 +17,12 @@ namespace {
 
 void checkTolerance(const Tolerance& tolerance) {
     if (!(tolerance.relative >= 0 && tolerance.relative < 1)) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("`tolerance.relative`", numberText(tolerance.relative),
-                                "a number from 0 to less than 1"));
+        throw Error(ErrorCode::kUsage, "`tolerance.relative`", numberText(tolerance.relative),
+                    "a number from 0 to less than 1");
     }
     if (!(tolerance.value >= 0 && std::isfinite(tolerance.value))) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("`tolerance.value`", numberText(tolerance.value), "a number >= 0"));
+        throw Error(ErrorCode::kUsage, "`tolerance.value`", numberText(tolerance.value),
+                    "a number >= 0");
     }
 }
 

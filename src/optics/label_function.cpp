@@ -120,9 +120,8 @@ bool isClear(int label, const LabelChanges& changes) {
 TransferFunction changeLabels(const TransferFunction& function, const LabelChanges& changes) {
     if (changes.empty()) return function;
     if (!function.categorical) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(namedLabels(changes).front().name, "a transfer function of values",
-                                "a table of labels"));
+        throw Error(ErrorCode::kUsage, namedLabels(changes).front().name,
+                    "a transfer function of values", "a table of labels");
     }
     std::vector<LabelLook> looks = looksOf(function);
     for (LabelLook& look : looks) {

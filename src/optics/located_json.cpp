@@ -15,7 +15,7 @@ namespace deltasplat {
 std::string readSmallText(const std::filesystem::path& file, const std::string& expected) {
     constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
     const auto fail = [&](const std::string& got) {
-        throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
+        throw Error(ErrorCode::kInput, file.string(), got, expected);
     };
     std::error_code ignored;
     // Looked at first, because opening a pipe waits for who writes to it.
@@ -57,8 +57,7 @@ std::string shortened(std::string text) {
 
 [[noreturn]] void fail(const std::filesystem::path& file, int line, const std::string& got,
                        const std::string& expected) {
-    throw Error(ErrorCode::kInput,
-                gotExpected(file.string() + ":" + std::to_string(line), got, expected));
+    throw Error(ErrorCode::kInput, file.string() + ":" + std::to_string(line), got, expected);
 }
 
 // Walks over text and leaves its place where the handler can see it: the parser tells no line.

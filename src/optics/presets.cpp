@@ -185,7 +185,7 @@ TransferFunction presetFunction(const std::string& name) {
     if (!preset) {
         std::string known;
         for (const Preset& one : kPresets) known += (known.empty() ? "" : ", ") + one.name;
-        throw Error(ErrorCode::kUsage, gotExpected("preset", name, "one of " + known));
+        throw Error(ErrorCode::kUsage, "preset", name, "one of " + known);
     }
     TransferFunction function = functionOf(name);
     function.name = name;

@@ -88,10 +88,9 @@ std::string quoted(const std::string& line) {
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& file, int number, const std::string& line) {
-    throw Error(ErrorCode::kInput,
-                gotExpected(file.string() + ":" + std::to_string(number), quoted(line),
-                            "label, name, red, green, blue and perhaps alpha (0..255), or label, "
-                            "red, green, blue (0..255), alpha (0..1), visible, mesh, \"name\""));
+    throw Error(ErrorCode::kInput, file.string() + ":" + std::to_string(number), quoted(line),
+                "label, name, red, green, blue and perhaps alpha (0..255), or label, "
+                "red, green, blue (0..255), alpha (0..1), visible, mesh, \"name\"");
 }
 
 // @param ofSlicer  whether alpha is 0..255, as in FreeSurfer's tables, which look the same
@@ -133,7 +132,7 @@ LabelLines readLines(const std::filesystem::path& file) {
         result.ofSlicer = !isOfSnap(words);
     }
     if (result.lines.empty())
-        throw Error(ErrorCode::kInput, gotExpected(file.string(), "no labels", "at least one"));
+        throw Error(ErrorCode::kInput, file.string(), "no labels", "at least one");
     return result;
 }
 

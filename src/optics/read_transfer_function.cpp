@@ -66,8 +66,7 @@ class PresetReader {
 
   private:
     [[noreturn]] void failAt(int line, const std::string& got, const std::string& expected) const {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(file_.string() + ":" + std::to_string(line), got, expected));
+        throw Error(ErrorCode::kInput, file_.string() + ":" + std::to_string(line), got, expected);
     }
 
     [[noreturn]] void fail(const LocatedJson& json, const std::string& expected) const {
@@ -105,8 +104,8 @@ class PresetReader {
 
 [[noreturn]] void refusePreset(const std::filesystem::path& file, const LocatedJson& json,
                                const std::string& got) {
-    throw Error(ErrorCode::kInput, gotExpected(file.string() + ":" + std::to_string(json.line), got,
-                                               "a transfer function, an object with RGBPoints"));
+    throw Error(ErrorCode::kInput, file.string() + ":" + std::to_string(json.line), got,
+                "a transfer function, an object with RGBPoints");
 }
 
 // All of a file's transfer functions: one, or an array.
@@ -251,10 +250,9 @@ TransferFunction readTransferFunction(const std::filesystem::path& file, const s
         if (here == name) return readPreset(file, *preset, listener);
         if (!here.empty()) known += (known.empty() ? "" : ", ") + here;
     }
-    throw Error(ErrorCode::kInput,
-                gotExpected(file.string(), "no transfer function \"" + name + "\"",
-                            known.empty() ? "none, for those it has are without names"
-                                          : "one of those it has: " + known));
+    throw Error(ErrorCode::kInput, file.string(), "no transfer function \"" + name + "\"",
+                known.empty() ? "none, for those it has are without names"
+                              : "one of those it has: " + known);
 }
 
 }  // namespace deltasplat

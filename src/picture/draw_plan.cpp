@@ -36,32 +36,29 @@ bool canBeDivided(const IndexBox& box, int between) {
 
 void checkBetween(int between) {
     if (between >= 0 && between <= kMostBetween) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("`between`", std::to_string(between),
-                            "a whole number within 0.." + std::to_string(kMostBetween)));
+    throw Error(ErrorCode::kUsage, "`between`", std::to_string(between),
+                "a whole number within 0.." + std::to_string(kMostBetween));
 }
 
 void checkMostJoined(int most) {
     if (most >= 1 && most <= kMostJoined && std::has_single_bit(unsigned(most))) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("`mostJoined`", std::to_string(most),
-                            "a power of two, at most " + std::to_string(kMostJoined)));
+    throw Error(ErrorCode::kUsage, "`mostJoined`", std::to_string(most),
+                "a power of two, at most " + std::to_string(kMostJoined));
 }
 
 [[noreturn]] void throwTooWide(const IndexBox& box, int between) {
     const glm::ivec3 dims = box.dims();
-    throw Error(ErrorCode::kFailed,
-                gotExpected("`between` " + std::to_string(between), dimsText(dims) + " voxels",
-                            "at most 2^30 parts of them along each axis (`between` 0: undivided)"));
+    throw Error(ErrorCode::kFailed, "`between` " + std::to_string(between),
+                dimsText(dims) + " voxels",
+                "at most 2^30 parts of them along each axis (`between` 0: undivided)");
 }
 
 [[noreturn]] void throwUndividable(const PreparedScene::Impl& scene, int between) {
     const bool isLit = scene.scene.optics.scattering.has_value();
-    throw Error(ErrorCode::kUsage,
-                gotExpected("`between`",
-                            std::to_string(between) + " with " +
-                                (isLit ? "`scattering`" : "`parts` or `colorGrids`"),
-                            "0: lit fog and media of several grids are drawn by whole voxels"));
+    throw Error(
+        ErrorCode::kUsage, "`between`",
+        std::to_string(between) + " with " + (isLit ? "`scattering`" : "`parts` or `colorGrids`"),
+        "0: lit fog and media of several grids are drawn by whole voxels");
 }
 
 bool dividesVoxels(const PreparedScene::Impl& scene) {
@@ -296,8 +293,7 @@ std::vector<Factorization> factorizeAll(const PreparedScene::Impl& scene, const 
     std::vector<Factorization> views =
         factorizeRegions(camera, volume.box, volume.worldFromIndex, resolution, atSlopeSteps);
     if (!views.empty()) return views;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("camera", "no lines of sight", "what makeCamera returns"));
+    throw Error(ErrorCode::kUsage, "camera", "no lines of sight", "what makeCamera returns");
 }
 
 // How wide a voxel's footprint is in a view: 1 where it has a sheet pixel of its own and is seen in

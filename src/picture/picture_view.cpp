@@ -48,15 +48,13 @@ void requireSize(const Camera& camera, const Image& image) {
     const glm::ivec2 size = camera.sizePixels;
     const std::size_t values = std::size_t{4} * std::size_t(size.x) * std::size_t(size.y);
     if (size.x < 1 || size.y < 1) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("camera", dimsText(size) + " pixels", "at least one each way"));
+        throw Error(ErrorCode::kUsage, "camera", dimsText(size) + " pixels",
+                    "at least one each way");
     }
     if (image.size == size && image.rgba.size() == values) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("image",
-                            dimsText(image.size) + " pixels, " + std::to_string(image.rgba.size()) +
-                                " values",
-                            "the camera's " + dimsText(size) + ", four values each"));
+    throw Error(ErrorCode::kUsage, "image",
+                dimsText(image.size) + " pixels, " + std::to_string(image.rgba.size()) + " values",
+                "the camera's " + dimsText(size) + ", four values each");
 }
 
 PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,

@@ -28,14 +28,14 @@ inline void requirePart(const PixelBox& part, glm::ivec2 size, const Image& imag
     const bool isWithin = !part.empty() && part.min.x >= 0 && part.min.y >= 0 &&
                           part.max.x <= size.x && part.max.y <= size.y;
     if (!isWithin) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("part of a picture", text(part), "some of its " + dimsText(size)));
+        throw Error(ErrorCode::kUsage, "part of a picture", text(part),
+                    "some of its " + dimsText(size));
     }
     if (image.size == part.size() &&
         image.rgba.size() == std::size_t{4} * std::size_t(image.size.x) * std::size_t(image.size.y))
         return;
-    throw Error(ErrorCode::kUsage, gotExpected("image", dimsText(image.size) + " pixels",
-                                               dimsText(part.size()) + ", those of the part"));
+    throw Error(ErrorCode::kUsage, "image", dimsText(image.size) + " pixels",
+                dimsText(part.size()) + ", those of the part");
 }
 
 /// Where the base plane of a view lies, in plain numbers.

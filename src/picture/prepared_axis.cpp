@@ -36,7 +36,7 @@ Optics opticsOf(const Volume& volume, Optics optics, const VoxelPainter* painter
 
 Scene requireVolume(Scene scene) {
     if (scene.volume) return scene;
-    throw Error(ErrorCode::kUsage, gotExpected("scene", "no volume", "one"));
+    throw Error(ErrorCode::kUsage, "scene", "no volume", "one");
 }
 
 // Whether what is shown is thin. Of thin voxels, two sheet pixels show little that one does not,

@@ -78,17 +78,15 @@ Footprint makeFootprint(double sigmaVoxels, glm::dvec2 shiftPerSlice, int resolu
                         std::optional<int> width, int perVoxel) {
     const DefaultFloats floats;
     if (!(sigmaVoxels * perVoxel >= kMinSigma && sigmaVoxels <= kMaxSigma)) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("`sigma`", numberText(sigmaVoxels),
-                                "a number of voxels from " + numberText(kMinSigma) + " to " +
-                                    numberText(kMaxSigma)));
+        throw Error(
+            ErrorCode::kUsage, "`sigma`", numberText(sigmaVoxels),
+            "a number of voxels from " + numberText(kMinSigma) + " to " + numberText(kMaxSigma));
     }
     // Every phase must have a voxel within reach.
     if (width && (*width < resolution || *width > kMaxFootprintWidth)) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("footprint width", std::to_string(*width),
-                                "pixels from " + std::to_string(resolution) + " to " +
-                                    std::to_string(kMaxFootprintWidth)));
+        throw Error(ErrorCode::kUsage, "footprint width", std::to_string(*width),
+                    "pixels from " + std::to_string(resolution) + " to " +
+                        std::to_string(kMaxFootprintWidth));
     }
     const SlicePlaneGaussian gaussian{sigmaVoxels * perVoxel, shiftPerSlice};
     Footprint footprint;

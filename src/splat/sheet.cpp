@@ -27,10 +27,9 @@ void requireShort(const glm::i64vec2& size, std::int64_t shift) {
     const std::int64_t longest =
         std::numeric_limits<std::int32_t>::max() - 2 * kTilePixels - 2 * shift;
     if (std::max(size.x, size.y) <= longest) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("sheet", sizeText(size),
-                            "at most " + std::to_string(std::max<std::int64_t>(longest, 0)) +
-                                " each way, a smaller `resolution`"));
+    throw Error(ErrorCode::kUsage, "sheet", sizeText(size),
+                "at most " + std::to_string(std::max<std::int64_t>(longest, 0)) +
+                    " each way, a smaller `resolution`");
 }
 
 }  // namespace
@@ -38,8 +37,8 @@ void requireShort(const glm::i64vec2& size, std::int64_t shift) {
 void requireCountable(const SheetLayout& layout) {
     const double most = std::numeric_limits<std::uint32_t>::max();
     if (double(layout.pitchPixels()) * layout.sizePixels.y <= most) return;
-    throw Error(ErrorCode::kUsage, gotExpected("sheet", sizeText(layout.sizePixels),
-                                               "at most 4294967295, a smaller `resolution`"));
+    throw Error(ErrorCode::kUsage, "sheet", sizeText(layout.sizePixels),
+                "at most 4294967295, a smaller `resolution`");
 }
 
 SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int channels) {

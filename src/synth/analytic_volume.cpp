@@ -56,8 +56,7 @@ const std::vector<std::string>& analyticNames() {
 AnalyticVolume makeAnalytic(const std::string& name, std::uint64_t seed, double noise) {
     const DefaultFloats floats;
     if (!(noise >= 0) || !std::isfinite(noise)) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("`noise`", std::to_string(noise), "a number of at least 0"));
+        throw Error(ErrorCode::kUsage, "`noise`", std::to_string(noise), "a number of at least 0");
     }
     if (name == "marschner-lobb") return {name, makeMarschnerLobb()};
     if (name == "hydrogen") return {name, makeHydrogen()};
@@ -72,7 +71,7 @@ AnalyticVolume makeAnalytic(const std::string& name, std::uint64_t seed, double 
 
     std::string names;
     for (const std::string& known : analyticNames()) names += (names.empty() ? "" : ", ") + known;
-    throw Error(ErrorCode::kUsage, gotExpected("`name`", "\"" + name + "\"", "one of " + names));
+    throw Error(ErrorCode::kUsage, "`name`", "\"" + name + "\"", "one of " + names);
 }
 
 }  // namespace deltasplat

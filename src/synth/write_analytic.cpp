@@ -42,8 +42,8 @@ SampleType sampleType(const std::string& name) {
     if (name.empty() || name == "uint8") return {RawType::kUint8, 1, storeWhole<std::uint8_t>};
     if (name == "uint16") return {RawType::kUint16, 2, storeWhole<std::uint16_t>};
     if (name == "float32") return {RawType::kFloat32, 4, storeFloat};
-    throw Error(ErrorCode::kUsage,
-                gotExpected("`type`", "\"" + name + "\"", "uint8, uint16 or float32 for .raw"));
+    throw Error(ErrorCode::kUsage, "`type`", "\"" + name + "\"",
+                "uint8, uint16 or float32 for .raw");
 }
 
 void warnOfOthers(const AnalyticVolume& volume, const std::filesystem::path& file,
@@ -85,8 +85,7 @@ void writeRaw(const AnalyticVolume& volume, const std::filesystem::path& file,
 void writeGrids(const AnalyticVolume& volume, const std::filesystem::path& file,
                 const AnalyticFileOptions& options, const Listener& listener) {
     if (!options.type.empty() && options.type != "float32") {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("`type`", "\"" + options.type + "\"", "float32 for .vdb"));
+        throw Error(ErrorCode::kUsage, "`type`", "\"" + options.type + "\"", "float32 for .vdb");
     }
     { const AtomicFile probe(file); }  // a bad name should fail before the work, not after
     std::vector<WrittenGrid> grids;
@@ -98,22 +97,20 @@ void writeGrids(const AnalyticVolume& volume, const std::filesystem::path& file,
 void checkOptions(const AnalyticFileOptions& options) {
     const glm::ivec3& dims = options.dims;
     if (dims.x < 1 || dims.y < 1 || dims.z < 1) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("`dims`",
-                                std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" +
-                                    std::to_string(dims.z),
-                                "three numbers of at least 1"));
+        throw Error(
+            ErrorCode::kUsage, "`dims`",
+            std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" + std::to_string(dims.z),
+            "three numbers of at least 1");
     }
     if (options.samples < 1 || options.samples > kMostSamples) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("`samples`", std::to_string(options.samples),
-                                "a whole number within 1.." + std::to_string(kMostSamples)));
+        throw Error(ErrorCode::kUsage, "`samples`", std::to_string(options.samples),
+                    "a whole number within 1.." + std::to_string(kMostSamples));
     }
     for (int axis = 0; axis < 3; ++axis) {
         const double spacing = options.spacing[axis];
         if (spacing > 0 && std::isfinite(spacing)) continue;
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("`spacing`", numberText(options.spacing), "three numbers above 0"));
+        throw Error(ErrorCode::kUsage, "`spacing`", numberText(options.spacing),
+                    "three numbers above 0");
     }
 }
 
@@ -129,9 +126,8 @@ void writeAnalytic(const AnalyticVolume& volume, const std::filesystem::path& fi
     } else if (extension == ".vdb") {
         writeGrids(volume, file, options, listener);
     } else {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(file.string(), "extension \"" + file.extension().string() + "\"",
-                                ".raw or .vdb"));
+        throw Error(ErrorCode::kUsage, file.string(),
+                    "extension \"" + file.extension().string() + "\"", ".raw or .vdb");
     }
 }
 

@@ -14,7 +14,7 @@
 namespace deltasplat {
 
 void refuseCamera(const char* option, const std::string& got, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
+    throw Error(ErrorCode::kUsage, option, got, expected);
 }
 
 bool isFinite(const glm::dvec3& v) {

@@ -62,15 +62,14 @@ double screenResolution(double pixelsPerVoxel) {
 
 void requireFinite(const glm::dvec3& eye) {
     if (std::isfinite(eye.x) && std::isfinite(eye.y) && std::isfinite(eye.z)) return;
-    throw Error(ErrorCode::kUsage, gotExpected("`eyeWorld`", "voxel index " + numberText(eye),
-                                               "a place that numbers can hold"));
+    throw Error(ErrorCode::kUsage, "`eyeWorld`", "voxel index " + numberText(eye),
+                "a place that numbers can hold");
 }
 
 void checkResolution(double resolution) {
     if (isResolution(resolution)) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("`resolution`", numberText(resolution),
-                            "a whole number within 1.." + std::to_string(kMaxResolution)));
+    throw Error(ErrorCode::kUsage, "`resolution`", numberText(resolution),
+                "a whole number within 1.." + std::to_string(kMaxResolution));
 }
 
 // Lines of sight of one axis, in steps (away, u, v), of which one shows a corner of the picture's

@@ -12,7 +12,7 @@ namespace deltasplat {
 namespace {
 
 [[noreturn]] void refuse(const char* field, double got, const char* expected) {
-    throw Error(ErrorCode::kUsage, gotExpected(field, numberText(got), expected));
+    throw Error(ErrorCode::kUsage, field, numberText(got), expected);
 }
 
 void checkPositive(const char* field, double number) {

@@ -25,13 +25,12 @@ Camera Camera::withOverscan(glm::ivec2 pixels) const {
     const auto isFine = [](int count) { return count >= 0 && count <= kMostOverscan; };
     const std::string text = std::to_string(pixels.x) + "," + std::to_string(pixels.y);
     if (!isFine(pixels.x) || !isFine(pixels.y)) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("`overscanPixels`", text,
-                                "two numbers within 0.." + std::to_string(kMostOverscan)));
+        throw Error(ErrorCode::kUsage, "`overscanPixels`", text,
+                    "two numbers within 0.." + std::to_string(kMostOverscan));
     }
     if (pixels != glm::ivec2(0) && projection == Projection::kLatlong) {
-        throw Error(ErrorCode::kUsage, gotExpected("`overscanPixels`", "`projection` latlong",
-                                                   "`projection` ortho or perspective"));
+        throw Error(ErrorCode::kUsage, "`overscanPixels`", "`projection` latlong",
+                    "`projection` ortho or perspective");
     }
     return pixels == glm::ivec2(0) ? *this : grown(*this, pixels);
 }

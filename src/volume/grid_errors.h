@@ -17,7 +17,7 @@ struct UnreadableGrid : Error {
     /// @param where  file and grid
     /// @param which  "a NonlinearFrustumMap transform"
     UnreadableGrid(const std::string& where, const std::string& which, const std::string& expected)
-        : Error(ErrorCode::kInput, gotExpected(where, which, expected)), obstacle(which) {}
+        : Error(ErrorCode::kInput, where, which, expected), obstacle(which) {}
 
     std::string obstacle;
 };
@@ -26,8 +26,7 @@ struct UnreadableGrid : Error {
 struct DamagedLeaves : Error {
     /// @param where  file and grid
     explicit DamagedLeaves(const std::string& where)
-        : Error(ErrorCode::kInput,
-                gotExpected(where, "leaves that are damaged", "a sound OpenVDB grid")) {}
+        : Error(ErrorCode::kInput, where, "leaves that are damaged", "a sound OpenVDB grid") {}
 };
 
 }  // namespace deltasplat

@@ -41,9 +41,8 @@ void scaleLengths(glm::dmat4& worldFromIndex, double factor) {
 
 void requirePlacement(const std::string& where, const std::string& what, const glm::dmat4& matrix) {
     if (givesPlaces(matrix)) return;
-    throw Error(ErrorCode::kInput,
-                gotExpected(where, what + " that cannot be inverted",
-                            "finite numbers that give each voxel a place of its own"));
+    throw Error(ErrorCode::kInput, where, what + " that cannot be inverted",
+                "finite numbers that give each voxel a place of its own");
 }
 
 }  // namespace deltasplat

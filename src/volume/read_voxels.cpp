@@ -44,18 +44,17 @@ void readVoxels(const Volume& volume, const IndexBox& box, std::span<double> val
     constexpr int kMost = (1 << 30) - 1;
     for (int axis = 0; axis < 3; ++axis) {
         if (box.min[axis] >= -kMost && box.max[axis] <= kMost) continue;
-        throw Error(ErrorCode::kUsage, gotExpected("voxels to read",
-                                                   "a box from " + std::to_string(box.min[axis]) +
-                                                       " to " + std::to_string(box.max[axis]),
-                                                   "indices within 2^30 of 0"));
+        throw Error(
+            ErrorCode::kUsage, "voxels to read",
+            "a box from " + std::to_string(box.min[axis]) + " to " + std::to_string(box.max[axis]),
+            "indices within 2^30 of 0");
     }
     const glm::dvec3 dims = box.dims();
     const double voxels = dims.x * dims.y * dims.z;
     const auto requireSize = [&](const char* what, std::size_t size) {
         if (double(size) == voxels) return;
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(std::string("voxels to read: ") + what,
-                                std::to_string(size) + " values", numberText(voxels)));
+        throw Error(ErrorCode::kUsage, std::string("voxels to read: ") + what,
+                    std::to_string(size) + " values", numberText(voxels));
     };
     requireSize("values", values.size());
     if (!active.empty()) requireSize("active", active.size());
@@ -66,17 +65,16 @@ void readVoxels(const Volume& volume, const IndexBox& box, std::span<double> val
                 tree, volume, box, [](auto value) { return double(value); }, values, active);
         });
         if (!isScalar) {
-            throw Error(ErrorCode::kUsage,
-                        gotExpected("voxels to read", "type " + volume.source->grid.type(),
-                                    "a scalar grid"));
+            throw Error(ErrorCode::kUsage, "voxels to read", "type " + volume.source->grid.type(),
+                        "a scalar grid");
         }
     } else if (volume.codes) {
         readTree(
             volume.codes->tree(), volume, box,
             [&](Code code) { return volume.codeBook.valueOf(code); }, values, active);
     } else {
-        throw Error(ErrorCode::kUsage, gotExpected("voxels to read", "a volume without voxels",
-                                                   "one that was read or made"));
+        throw Error(ErrorCode::kUsage, "voxels to read", "a volume without voxels",
+                    "one that was read or made");
     }
 }
 

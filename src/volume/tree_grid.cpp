@@ -35,8 +35,8 @@ openvdb::GridBase::Ptr toOpenVdb(const TreeGrid& grid) {
         made = openvdb::Grid<Tree>::create(std::static_pointer_cast<Tree>(grid.tree));
     });
     if (!made) {
-        throw Error(ErrorCode::kFailed, gotExpected("grid \"" + grid.name() + "\"",
-                                                    "type " + grid.type(), "a scalar grid"));
+        throw Error(ErrorCode::kFailed, "grid \"" + grid.name() + "\"", "type " + grid.type(),
+                    "a scalar grid");
     }
     made->insertMeta(*grid.metadata.toMetaMap(grid.name()));
     made->setTransform(transformOf(*grid.map));

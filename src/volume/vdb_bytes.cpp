@@ -13,7 +13,7 @@ VdbBytes::VdbBytes(std::shared_ptr<const FileBytes> file)
     : file_(std::move(file)), name_(file_->path().string()), size_(file_->size()) {}
 
 void VdbBytes::failCorrupt(const std::string& got, const std::string& expected) const {
-    throw Error(ErrorCode::kInput, gotExpected(name_, got, expected));
+    throw Error(ErrorCode::kInput, name_, got, expected);
 }
 
 void VdbBytes::require(std::uint64_t count) const {

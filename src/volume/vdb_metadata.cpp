@@ -146,8 +146,8 @@ openvdb::MetaMap::Ptr VdbMetadata::toMetaMap(const std::string& where) const {
     try {
         metadata->readMeta(stream);
     } catch (const openvdb::Exception& error) {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(where, printable(error.what()), "metadata that OpenVDB can read"));
+        throw Error(ErrorCode::kInput, where, printable(error.what()),
+                    "metadata that OpenVDB can read");
     }
     return metadata;
 }

@@ -83,10 +83,9 @@ MapBase::Ptr makeMap(const glm::dmat4& worldFromIndex) {
     const MapBase::Ptr map = mapIfAny(m);
     if (map) return map;
     const glm::dvec3 size(glm::length(m[0]), glm::length(m[1]), glm::length(m[2]));
-    throw Error(ErrorCode::kFailed,
-                gotExpected("voxel size", numberText(size) + " without a unit of length",
-                            "a volume of at least 3e-15, as OpenVDB's grids have it (.nrrd has no "
-                            "such limit)"));
+    throw Error(ErrorCode::kFailed, "voxel size", numberText(size) + " without a unit of length",
+                "a volume of at least 3e-15, as OpenVDB's grids have it (.nrrd has no "
+                "such limit)");
 }
 
 // Transform's constructor takes near numbers for equal and rounds when it simplifies a map. Reading
@@ -150,7 +149,7 @@ glm::dmat4 matrixOf(const MapBase& map) {
 
 glm::dmat4 worldFromIndexOf(const MapBase& map, const std::string& where) {
     const auto fail = [&](const std::string& got, const std::string& expected) {
-        throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
+        throw Error(ErrorCode::kInput, where, got, expected);
     };
     if (!map.isLinear()) {
         throw UnreadableGrid(where, "a " + map.type() + " transform", "a linear one (no frustum)");

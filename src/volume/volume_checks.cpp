@@ -13,21 +13,20 @@ namespace deltasplat {
 
 void requireFiniteSpan(const std::string& where, double low, double high) {
     if (std::isfinite(high - low)) return;
-    throw Error(ErrorCode::kInput,
-                gotExpected(where, "values from " + numberText(low) + " to " + numberText(high),
-                            "a range that a double can hold"));
+    throw Error(ErrorCode::kInput, where,
+                "values from " + numberText(low) + " to " + numberText(high),
+                "a range that a double can hold");
 }
 
 void requireFiniteNan(const ReadOptions& options) {
     if (!options.nanValue || std::isfinite(*options.nanValue)) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("`nanValue`", numberText(*options.nanValue), "a finite number"));
+    throw Error(ErrorCode::kUsage, "`nanValue`", numberText(*options.nanValue), "a finite number");
 }
 
 void requireFloatNan(double nanValue) {
     if (std::abs(nanValue) <= double(std::numeric_limits<float>::max())) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("`nanValue`", numberText(nanValue), "a value that is finite as float"));
+    throw Error(ErrorCode::kUsage, "`nanValue`", numberText(nanValue),
+                "a value that is finite as float");
 }
 
 void summarize(Volume& volume) {

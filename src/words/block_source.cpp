@@ -45,9 +45,8 @@ class Classifier {
             holdLooks(slots, position, part, number, classes);
         } else {
             const auto next = [&](Slot before, Slot slot) { return holder_->next(before, slot); };
-            holdSlots(slots, held_[part], next, [&](std::size_t i, Slot slot) {
-                classes[i] = holder_->classOf(slot);
-            });
+            holdSlots(slots, held_[part], next,
+                      [&](std::size_t i, Slot slot) { classes[i] = holder_->classOf(slot); });
         }
     }
 
@@ -143,16 +142,17 @@ class MixedBlocks : public BlockSource {
         values_.reader.read(block, values_.window);
         const bool isSeen = tools_.sight->canBeSeen(values_.window);
         if (isSeen) mix(block, writer);
-        forBlocks(block, writer, [&](const glm::ivec3& position, int number, std::size_t part,
-                                     std::size_t row, int slices) {
-            if (isSeen) {
-                classify(position, number, part);
-            } else {
-                classes_.fill(kEmptySlot);
-                classifier_.forget(part);
-            }
-            writer.add(classes_, looks(), position, part, row, slices);
-        });
+        forBlocks(block, writer,
+                  [&](const glm::ivec3& position, int number, std::size_t part, std::size_t row,
+                      int slices) {
+                      if (isSeen) {
+                          classify(position, number, part);
+                      } else {
+                          classes_.fill(kEmptySlot);
+                          classifier_.forget(part);
+                      }
+                      writer.add(classes_, looks(), position, part, row, slices);
+                  });
     }
 
   protected:
@@ -203,7 +203,8 @@ class MixedBlocks : public BlockSource {
 class PaintedBlocks : public MixedBlocks {
   public:
     explicit PaintedBlocks(const SourceTools& tools) : MixedBlocks(tools, false) {
-        if (tools.uncut != tools.codes) uncut_.emplace(*tools.uncut, tools.options.sliceAxis, false);
+        if (tools.uncut != tools.codes)
+            uncut_.emplace(*tools.uncut, tools.options.sliceAxis, false);
         painted_.resize(std::size_t(divided().parts.voxels()));
     }
 

@@ -21,13 +21,13 @@ class SlotHolder;
 struct SourceTools {
     const PackOptions& options;
     std::span<const Slot> slotMap;
-    IndexBox box;                          ///< of what voxels are divided into, (slice, u, v)
-    const ClassRamps* ramps = nullptr;     ///< of the map
-    const SlotHolder* holder = nullptr;    ///< of voxels that go on as what they were
-    const MixedSight* sight = nullptr;     ///< with a mixer
-    const CodeTree* codes = nullptr;       ///< that values are mixed from
-    const CodeTree* uncut = nullptr;       ///< that gradients are taken of
-    const MixMap* mixMap = nullptr;        ///< with a mixer, of the map
+    IndexBox box;                        ///< of what voxels are divided into, (slice, u, v)
+    const ClassRamps* ramps = nullptr;   ///< of the map
+    const SlotHolder* holder = nullptr;  ///< of voxels that go on as what they were
+    const MixedSight* sight = nullptr;   ///< with a mixer
+    const CodeTree* codes = nullptr;     ///< that values are mixed from
+    const CodeTree* uncut = nullptr;     ///< that gradients are taken of
+    const MixMap* mixMap = nullptr;      ///< with a mixer, of the map
 };
 
 /// Where the blocks lie that a block becomes where voxels are divided: parts of a column along u

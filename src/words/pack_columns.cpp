@@ -69,8 +69,7 @@ class TilePacker {
                     endBefore(column, place);
                     continue;
                 }
-                add(reader.classes(column), column, place,
-                    writer_.range().layout.slicesOf(place));
+                add(reader.classes(column), column, place, writer_.range().layout.slicesOf(place));
                 last_[column] = place;
             }
         }

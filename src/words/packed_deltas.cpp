@@ -18,9 +18,9 @@
 #include "base/parallel.h"
 #include "base/sorting.h"
 #include "deltasplat/error.h"
-#include "words/column_packer.h"
 #include "words/joined_tiles.h"
 #include "words/mixed_sight.h"
+#include "words/pack_columns.h"
 #include "words/slice_joiner.h"
 #include "words/slot_holder.h"
 
@@ -45,7 +45,7 @@ void addBlocks(const BlockSet& more, const IndexBox& box, int sliceAxis,
     blocks = std::move(all);
 }
 
-// Cuts the blocks into runs of whole columns, for each of which there is one packer. The cuts
+// Cuts the blocks into runs of whole columns, for each of which there is one writer. The cuts
 // depend on the volume alone.
 // @param atRows  cut behind each row of columns as well
 std::vector<Columns> cutAtColumns(const std::vector<CodeBlock>& blocks, bool atRows) {
@@ -64,7 +64,7 @@ std::vector<Columns> cutAtColumns(const std::vector<CodeBlock>& blocks, bool atR
     return runs;
 }
 
-// Room for words that are not in order yet: there is as much as packers use at once, for each takes
+// Room for words that are not in order yet: there is as much as writers use at once, for each takes
 // what another one is done with. New memory takes the system longer than words take to be made.
 class WordRooms {
   public:
@@ -86,16 +86,16 @@ class WordRooms {
 };
 
 // Returns the packed columns ordered by u, then v.
-// @param rowOf  rowOf(i): what tells packers of one row of columns from those of others; these have
+// @param rowOf  rowOf(i): what tells writers of one row of columns from those of others; these have
 //               several rows each where blocks are halved along u, or joined
 template <typename RowOf>
-std::vector<PackedColumns*> inOrder(std::vector<ColumnPacker>& packers, const RowOf& rowOf) {
+std::vector<PackedColumns*> inOrder(std::vector<WordWriter>& writers, const RowOf& rowOf) {
     std::vector<PackedColumns*> columns;
-    for (std::size_t first = 0; first < packers.size();) {
+    for (std::size_t first = 0; first < writers.size();) {
         std::size_t last = first + 1;
-        while (last < packers.size() && rowOf(last) == rowOf(first)) ++last;
-        for (std::size_t row = 0; row < packers[first].rows().size(); ++row)
-            for (std::size_t i = first; i < last; ++i) columns.push_back(&packers[i].rows()[row]);
+        while (last < writers.size() && rowOf(last) == rowOf(first)) ++last;
+        for (std::size_t row = 0; row < writers[first].rows().size(); ++row)
+            for (std::size_t i = first; i < last; ++i) columns.push_back(&writers[i].rows()[row]);
         first = last;
     }
     return columns;
@@ -217,29 +217,35 @@ struct DeltaPacker::Impl {
         return {layout, layout.firstBlock, layout.lastBlock};
     }
 
-    std::vector<ColumnPacker> run(const PackRange& range) const {
-        const PackTools tools{ramps ? &*ramps : nullptr,
-                              holder ? &*holder : nullptr,
-                              options.mixer,
-                              sight ? &*sight : nullptr,
-                              volume.codes.get(),
-                              volume.uncut ? volume.uncut.get() : volume.codes.get(),
-                              mixMap ? &*mixMap : nullptr};
-        std::vector<ColumnPacker> packers;
+    std::vector<WordWriter> run(const PackRange& range) const {
+        const SourceTools tools{options,
+                                slotMap,
+                                box,
+                                ramps ? &*ramps : nullptr,
+                                holder ? &*holder : nullptr,
+                                sight ? &*sight : nullptr,
+                                volume.codes.get(),
+                                volume.uncut ? volume.uncut.get() : volume.codes.get(),
+                                mixMap ? &*mixMap : nullptr};
+        const ClassReader classes(slotMap, tools.ramps, options.sliceAxis);
         const std::size_t count = joined ? joined->runs().size() : runs.size();
-        packers.reserve(count);
-        for (std::size_t i = 0; i < count; ++i)
-            packers.emplace_back(box, options, tools, slotMap, range);
+        // A column has up to four parts.
+        const std::size_t columns = joined ? JoinedTileReader::kColumns : 4;
+        std::vector<WordWriter> writers(count, WordWriter(box, options, range, columns));
         WordRooms rooms;
         const auto pack = [&](std::size_t i) {
             std::vector<PackedColumns> room = rooms.take();
-            joined ? packers[i].runJoined(*joined, i, room) : packers[i].run(runs[i], room);
+            if (joined) {
+                packTiles(*joined, i, classes, *joiner, options.descending, writers[i], room);
+            } else {
+                packColumns(runs[i], *makeSource(tools), writers[i], room);
+            }
             rooms.give(std::move(room));
         };
         const bool areLooks = joiner && joiner->looks();
         if (!range.budget && !areLooks) {
             parallelFor(count, pack);
-            return packers;
+            return writers;
         }
         // Some from all over the volume show how many words, and looks, there will be. The others
         // in order: neighbours read some of the same leaves.
@@ -253,12 +259,12 @@ struct DeltaPacker::Impl {
         if (range.budget) range.budget->foresee(double(sample) / double(count));
         if (areLooks) {
             joiner->looks()->endSample(ofHalf);
-            if (hasTooManyLooks()) return packers;
+            if (hasTooManyLooks()) return writers;
         }
         parallelFor(count, [&](std::size_t i) {
             if (i % kStep != 0) pack(i);
         });
-        return packers;
+        return writers;
     }
 
     bool hasTooManyLooks() const { return joiner && joiner->hasTooManyLooks(); }
@@ -272,18 +278,18 @@ struct DeltaPacker::Impl {
         return true;
     }
 
-    // Plans slabs by what packers counted, and puts their words in order.
-    void collect(std::vector<ColumnPacker>& packers, SlabPlanner& planner,
+    // Plans slabs by what writers counted, and puts their words in order.
+    void collect(std::vector<WordWriter>& writers, SlabPlanner& planner,
                  PackedDeltas& packed) const {
-        for (const ColumnPacker& packer : packers) planner.add(packer.planner());
+        for (const WordWriter& writer : writers) planner.add(writer.planner());
         SlabPlan plan = planner.plan(options.encoding, options.slabLength);
         packed.slabs = std::move(plan.slabs);
-        collectWords(columnsOf(packers), plan.layout, options.painter != nullptr, packed);
+        collectWords(columnsOf(writers), plan.layout, options.painter != nullptr, packed);
     }
 
-    std::vector<PackedColumns*> columnsOf(std::vector<ColumnPacker>& packers) const {
-        // Where packers have one row of columns each, they are in order.
-        return inOrder(packers, [&](std::size_t i) {
+    std::vector<PackedColumns*> columnsOf(std::vector<WordWriter>& writers) const {
+        // Where writers have one row of columns each, they are in order.
+        return inOrder(writers, [&](std::size_t i) {
             if (joined) return joined->runs()[i].front().x;
             return divided.within > 1 ? runs[i].begin->position.y : int(i);
         });
@@ -312,7 +318,7 @@ struct DeltaPacker::Impl {
                       mostBlocks() * kMostWordsOfBlock * wordBytes + 16.0 * box.dims().x);
     }
 
-    // The most words of a slab that are in memory while it is packed (ColumnPacker::isNeeded).
+    // The most words of a slab that are in memory while it is packed (WordWriter::isNeeded).
     double storedWords(const PlannedSlab& slab) const {
         const bool storesAll = options.descending && !slab.whole;
         return double(storesAll ? slab.words + slab.seenWords : slab.stampedWords());
@@ -354,11 +360,11 @@ PackedDeltas DeltaPacker::packAll() {
     if (impl_->volume.empty()) return packed;
     impl_->requireBlocks();
     SlabPlanner planner(packed.box);
-    std::vector<ColumnPacker> packers;
+    std::vector<WordWriter> writers;
     do {
-        packers = impl_->run(impl_->wholeRange(planner));
+        writers = impl_->run(impl_->wholeRange(planner));
     } while (impl_->mustJoinAgain());
-    impl_->collect(packers, planner, packed);
+    impl_->collect(writers, planner, packed);
     return packed;
 }
 
@@ -368,18 +374,18 @@ PackedDeltas DeltaPacker::packOrPlan(double mostBytes) {
     SlabPlanner planner(packed.box);
     PackRange range = impl_->wholeRange(planner);
     std::optional<WordBudget> budget;
-    std::vector<ColumnPacker> packers;
+    std::vector<WordWriter> writers;
     do {
         budget.emplace(impl_->wordsToTry(mostBytes));
         range.storesWords = !budget->isSpent();
         range.budget = range.storesWords ? &*budget : nullptr;
-        packers = impl_->run(range);
+        writers = impl_->run(range);
     } while (impl_->mustJoinAgain());
     if (!budget->isSpent()) {
-        impl_->collect(packers, planner, packed);
+        impl_->collect(writers, planner, packed);
         return packed;
     }
-    for (const ColumnPacker& packer : packers) planner.add(packer.planner());
+    for (const WordWriter& writer : writers) planner.add(writer.planner());
     impl_->planned = planner.plan(impl_->options.encoding, impl_->options.slabLength);
     packed.slabs = impl_->planned.slabs;
     packed.begins.assign(std::size_t(packed.box.dims().x) + 1, 0);
@@ -415,10 +421,10 @@ PackedDeltas DeltaPacker::pack(const SlabRange& part) const {
     for (int i = part.first; i < part.last; ++i)
         words += impl_->storedWords(packed.slabs[std::size_t(i)]);
     requireMemory("part of a delta grid", words * kBytesPerWord);
-    std::vector<ColumnPacker> packers =
+    std::vector<WordWriter> writers =
         impl_->run({layout, firstBlock, lastBlock, true, impl_->planned.slabs});
     if (impl_->hasTooManyLooks()) throw std::logic_error("a part has looks that the whole has not");
-    collectWords(impl_->columnsOf(packers), layout, false, packed);
+    collectWords(impl_->columnsOf(writers), layout, false, packed);
     return packed;
 }
 

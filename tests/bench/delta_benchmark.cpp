@@ -52,7 +52,7 @@ openvdb::FloatGrid::Ptr copyDense(const std::string& file, const RawLayout& layo
 void benchmarkFile(const std::string& file, int repeats) {
     const RawLayout layout = resolveRawLayout(file, {});
     if (layout.type != RawType::kUint8)
-        throw Error(ErrorCode::kUsage, gotExpected(file, rawTypeName(layout.type), "uint8"));
+        throw Error(ErrorCode::kUsage, file, rawTypeName(layout.type), "uint8");
     const std::filesystem::path output = std::filesystem::temp_directory_path() / "benchmark.vdb";
     openvdb::FloatGrid::Ptr dense;
     Volume volume;

@@ -68,7 +68,7 @@ bool hasPlaceholder(const std::filesystem::path& file) {
 OutputName::OutputName(std::string option, const std::filesystem::path& file)
     : option_(std::move(option)), file_(file.string()) {
     const auto refuse = [&](const std::string& got) {
-        throw Error(ErrorCode::kUsage, gotExpected(option_, got, kKnown));
+        throw Error(ErrorCode::kUsage, option_, got, kKnown);
     };
     const std::string signs = signsOf(file_);
     std::string text;
@@ -93,8 +93,8 @@ OutputName::OutputName(std::string option, const std::filesystem::path& file)
     }
     pieces_.push_back({text, false});
     if (!hasAny) {
-        throw Error(ErrorCode::kUsage, gotExpected(option_, file_ + " with a pattern of inputs",
-                                                   std::string("a name with ") + kKnown));
+        throw Error(ErrorCode::kUsage, option_, file_ + " with a pattern of inputs",
+                    std::string("a name with ") + kKnown);
     }
 }
 
@@ -122,9 +122,8 @@ std::filesystem::path OutputName::of(const InputParts& parts,
         } else if (!parts.frame.empty()) {
             text += parts.frame;
         } else {
-            throw Error(ErrorCode::kUsage,
-                        gotExpected(option_, file_ + " for " + input.string(),
-                                    "inputs with a number in their names for {frame}"));
+            throw Error(ErrorCode::kUsage, option_, file_ + " for " + input.string(),
+                        "inputs with a number in their names for {frame}");
         }
         dropsSlash = isFolder && parts.folder.empty();
     }

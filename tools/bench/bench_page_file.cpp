@@ -26,15 +26,13 @@ fs::path pageIn(const fs::path& folder) {
 
 void checkPageFolder(const fs::path& folder, glm::ivec2 pictureSize) {
     if (pictureSize.x > kMaxPngSide || pictureSize.y > kMaxPngSide) {
-        throw Error(
-            ErrorCode::kUsage,
-            gotExpected(
-                "--size", std::to_string(pictureSize.x) + "x" + std::to_string(pictureSize.y),
-                "sides of at most " + std::to_string(kMaxPngSide) + " pixels with --report"));
+        throw Error(ErrorCode::kUsage, "--size",
+                    std::to_string(pictureSize.x) + "x" + std::to_string(pictureSize.y),
+                    "sides of at most " + std::to_string(kMaxPngSide) + " pixels with --report");
     }
     std::error_code ignored;
     if (fs::exists(folder, ignored) && !fs::is_directory(folder, ignored))
-        throw Error(ErrorCode::kOutput, gotExpected(folder.string(), "a file", "a folder"));
+        throw Error(ErrorCode::kOutput, folder.string(), "a file", "a folder");
     // A folder can be made where a file can.
     const AtomicFile probe(fs::exists(folder, ignored) ? pageIn(folder) : withoutSlash(folder));
 }

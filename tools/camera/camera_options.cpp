@@ -33,8 +33,7 @@ constexpr const char* kLenses[] = {"--camera-matrix", "--projection",  "--fov",
 
 void requireOnce(const CLI::App& app, const std::string& option, const char* other) {
     if (!isGiven(app, other)) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected(other, "it and " + option, "the camera one way or the other"));
+    throw Error(ErrorCode::kUsage, other, "it and " + option, "the camera one way or the other");
 }
 
 CameraMotion readOne(const std::filesystem::path& given, const Listener& listener) {
@@ -84,9 +83,8 @@ void usePoses(const CLI::App& app, PictureOptions& options) {
 const CArmPose& poseAt(const CameraChoice& choice, int frame) {
     const auto count = int(choice.poses.size());
     if (frame >= 1 && frame <= count) return choice.poses[std::size_t(frame) - 1];
-    throw Error(ErrorCode::kUsage,
-                gotExpected("--frames", std::to_string(frame),
-                            "1 to " + std::to_string(count) + ", a line of --poses for each"));
+    throw Error(ErrorCode::kUsage, "--frames", std::to_string(frame),
+                "1 to " + std::to_string(count) + ", a line of --poses for each");
 }
 
 // Frames before the first key and behind the last.

@@ -58,9 +58,8 @@ class PoseReader {
 
   private:
     [[noreturn]] void fail(const std::string& got, const std::string& expected) const {
-        throw Error(
-            ErrorCode::kInput,
-            gotExpected(file_.string() + ":" + std::to_string(std::max(line_, 1)), got, expected));
+        throw Error(ErrorCode::kInput, file_.string() + ":" + std::to_string(std::max(line_, 1)),
+                    got, expected);
     }
 
     std::string expectedLine() const {

@@ -11,7 +11,7 @@ namespace deltasplat {
 namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& output, const std::string& got) {
-    throw Error(ErrorCode::kUsage, gotExpected(output.string(), got, "another name"));
+    throw Error(ErrorCode::kUsage, output.string(), got, "another name");
 }
 
 }  // namespace

@@ -43,8 +43,7 @@ Parser<WriteOptions> background(const WriteOptions& before) {
         try {
             options.background = number()(option, text);
         } catch (const Error&) {
-            throw Error(ErrorCode::kUsage,
-                        gotExpected(option, text, "a finite number, auto or none"));
+            throw Error(ErrorCode::kUsage, option, text, "a finite number, auto or none");
         }
         return options;
     };

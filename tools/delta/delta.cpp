@@ -59,7 +59,7 @@ Parser<int> keyInterval() {
     return [](const std::string& option, const std::string& text) {
         const int slices = int(wholeNumber(0, 1 << 20)(option, text));
         if (slices % 8 == 0) return slices;
-        throw Error(ErrorCode::kUsage, gotExpected(option, text, "a multiple of 8"));
+        throw Error(ErrorCode::kUsage, option, text, "a multiple of 8");
     };
 }
 
@@ -114,9 +114,8 @@ void declareOptions(CLI::App& app, DeltaCommand& command) {
 
 void checkDeltaFile(const std::filesystem::path& output) {
     if (lowerExtension(output) != ".vdb") {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(output.string(),
-                                "extension \"" + output.extension().string() + "\"", ".vdb"));
+        throw Error(ErrorCode::kUsage, output.string(),
+                    "extension \"" + output.extension().string() + "\"", ".vdb");
     }
     const AtomicFile probe(output);
 }
@@ -147,9 +146,8 @@ void warnOfWholeNumbers(const Volume& volume, const DeltaFileEntry& entry,
 }
 
 [[noreturn]] void refuseOthers(const std::filesystem::path& input, const std::string& others) {
-    throw Error(ErrorCode::kFailed,
-                gotExpected(input.string(), others + ", which no delta grid holds",
-                            "scalar grids alone (--scalars-only leaves out others)"));
+    throw Error(ErrorCode::kFailed, input.string(), others + ", which no delta grid holds",
+                "scalar grids alone (--scalars-only leaves out others)");
 }
 
 // Asked before hours of work, as far as it can be known.

@@ -239,8 +239,7 @@ Verdict compareFrames(const CLI::App& app, const DiffOptions& options, const Ses
     ProgressDisplay display(session.common);
     std::vector<FrameDiff> frames = framesOf(options, display.stage(0, 0));
     if (frames.empty()) {
-        throw Error(ErrorCode::kInput,
-                    gotExpected("--frames", "no frame that both have", "at least one"));
+        throw Error(ErrorCode::kInput, "--frames", "no frame that both have", "at least one");
     }
     std::vector<FrameFiles> files;
     for (const FrameDiff& frame : frames) files.push_back({frame.frame, frame.a, frame.b});

@@ -17,9 +17,8 @@ std::string extensionOf(const std::filesystem::path& file) {
 
 bool isSvg(const std::filesystem::path& file) {
     if (isDrawingFile(file)) return extensionOf(file) == ".svg";
-    throw Error(ErrorCode::kUsage,
-                gotExpected(file.string(), "extension \"" + file.extension().string() + "\"",
-                            ".png or .svg"));
+    throw Error(ErrorCode::kUsage, file.string(), "extension \"" + file.extension().string() + "\"",
+                ".png or .svg");
 }
 
 }  // namespace

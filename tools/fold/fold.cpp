@@ -64,9 +64,8 @@ std::string noteOf(const Notes& notes, const std::string& name) {
 void applyParts(const SlabFiles& parts, const std::string& file, RenderCommand& command) {
     const std::string version = noteOf(parts.notes().picture, "version");
     if (version != programVersion()) {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(file, "a part that version " + version + " wrote",
-                                "one of version " + programVersion()));
+        throw Error(ErrorCode::kInput, file, "a part that version " + version + " wrote",
+                    "one of version " + programVersion());
     }
     const Camera& camera = parts.camera();
     command.input = noteOf(parts.notes().part, "input");
@@ -74,8 +73,8 @@ void applyParts(const SlabFiles& parts, const std::string& file, RenderCommand& 
     options.overscanPixels = camera.overscanPixels;
     options.sizePixels = camera.sizePixels - 2 * camera.overscanPixels;
     if (camera.overscanPixels != glm::ivec2(0) && !isExr(command)) {
-        throw Error(ErrorCode::kUsage, gotExpected("--output", command.output.string(),
-                                                   "an .exr file, for its parts have --overscan"));
+        throw Error(ErrorCode::kUsage, "--output", command.output.string(),
+                    "an .exr file, for its parts have --overscan");
     }
     checkExr(command);
     checkImageFile(command.output, options.sizePixels, command.image);
@@ -127,7 +126,7 @@ Files partsOf(const FoldCommand& asked) {
         const FoundFiles found = findFiles(name, {});
         for (const FoundFile& one : found.files) parts.push_back(one.file);
         if (found.files.empty()) {
-            throw Error(ErrorCode::kInput, gotExpected(name, "no file that fits", "at least one"));
+            throw Error(ErrorCode::kInput, name, "no file that fits", "at least one");
         }
     }
     return parts;

@@ -39,9 +39,9 @@ extern "C" void* deltasplat_bind_late_call(LateCall* call) {
     void* const function = ::dlsym(opened(call->module), call->name);
     if (!function) {
         const char* const why = ::dlerror();
-        throw Error(ErrorCode::kFailed, gotExpected(std::string("module ") + call->module,
-                                                    printable(why ? why : "nothing"),
-                                                    "the library that the program was built with"));
+        throw Error(ErrorCode::kFailed, std::string("module ") + call->module,
+                    printable(why ? why : "nothing"),
+                    "the library that the program was built with");
     }
     call->function.store(function, std::memory_order_release);
     return function;

@@ -24,8 +24,8 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& name, const std::string& got,
                          const std::string& expected) {
-    throw Error(ErrorCode::kFailed,
-                gotExpected("module " + name, got, expected + ", installed with the program"));
+    throw Error(ErrorCode::kFailed, "module " + name, got,
+                expected + ", installed with the program");
 }
 
 // What a module takes once it is loaded.

@@ -66,7 +66,7 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
 }
 
 void requireArgument(bool given, const std::string& name, const std::string& expected) {
-    if (!given) throw Error(ErrorCode::kUsage, gotExpected(name, "nothing", expected));
+    if (!given) throw Error(ErrorCode::kUsage, name, "nothing", expected);
 }
 
 }  // namespace deltasplat

@@ -29,8 +29,7 @@ auto readOr(const std::string& option, const std::string& text, const std::strin
     try {
         return read();
     } catch (const Error&) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(option, text.empty() ? "nothing" : text, expected));
+        throw Error(ErrorCode::kUsage, option, text.empty() ? "nothing" : text, expected);
     }
 }
 
@@ -186,12 +185,11 @@ void placeMask(const std::filesystem::path& input, const Volume& volume,
     const bool isDense = !volume.hasBackground && !mask.hasBackground;
     if (!isDense || !(saysNoPlace(input) || saysNoPlace(file))) return;
     if (mask.box != volume.box) {
-        throw Error(
-            ErrorCode::kInput,
-            gotExpected("--mask", file.string() + " of " + dimsText(mask.box.dims()) + " voxels",
-                        dimsText(volume.box.dims()) +
-                            ", as the volume has, for the files do not say "
-                            "where both lie"));
+        throw Error(ErrorCode::kInput, "--mask",
+                    file.string() + " of " + dimsText(mask.box.dims()) + " voxels",
+                    dimsText(volume.box.dims()) +
+                        ", as the volume has, for the files do not say "
+                        "where both lie");
     }
     mask.worldFromIndex = volume.worldFromIndex;
 }
@@ -254,8 +252,8 @@ std::vector<std::filesystem::path> filesOfMask(const CutChoice& choice) {
     const FileAndName named = fileAndGrid(choice.mask);
     if (named.name.empty() || findInput(named.file, {}).format == InputKind::Format::kVdb)
         return {named.file};
-    throw Error(ErrorCode::kUsage, gotExpected("--mask", choice.mask.string(),
-                                               "a .vdb before the colon, or no colon"));
+    throw Error(ErrorCode::kUsage, "--mask", choice.mask.string(),
+                "a .vdb before the colon, or no colon");
 }
 
 Volume cutAsChosen(const Volume& volume, const std::filesystem::path& input,

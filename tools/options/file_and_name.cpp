@@ -24,7 +24,7 @@ std::optional<FileAndName> findFileAndName(const std::string& option,
         if (!isThere(file)) continue;
         const std::string name = text.substr(colon + 1);
         if (!name.empty()) return FileAndName{file, name};
-        throw Error(ErrorCode::kUsage, gotExpected(option, text, "a name behind the colon"));
+        throw Error(ErrorCode::kUsage, option, text, "a name behind the colon");
     }
     return {};
 }

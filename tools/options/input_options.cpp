@@ -107,8 +107,8 @@ namespace {
 void requireChoice(const CLI::App& app, const std::string& option, bool meant,
                    const std::string& inputs) {
     if (meant || !isGiven(app, option)) return;
-    throw Error(ErrorCode::kUsage, gotExpected(option, app.get_option(option)->as<std::string>(),
-                                               "it with " + inputs + " input"));
+    throw Error(ErrorCode::kUsage, option, app.get_option(option)->as<std::string>(),
+                "it with " + inputs + " input");
 }
 
 }  // namespace

@@ -19,9 +19,8 @@ LayerChoice parseLayer(const std::string& option, const std::string& text) {
     const std::size_t colon = text.find(':');
     const std::string shown = colon == std::string::npos ? "" : text.substr(colon + 1);
     if (colon == 0 || shown.empty()) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(option, text,
-                                "GRID:TF, TF being a file, a preset or fire, as in heat:fire"));
+        throw Error(ErrorCode::kUsage, option, text,
+                    "GRID:TF, TF being a file, a preset or fire, as in heat:fire");
     }
     return {text.substr(0, colon), shown == kFire ? "" : shown};
 }
@@ -34,8 +33,7 @@ glm::dvec2 parseKelvin(const std::string& option, const std::string& text) {
         if (parts.size() == 2) return {number()(option, parts[0]), number()(option, parts[1])};
     } catch (const Error&) {
     }
-    throw Error(ErrorCode::kUsage,
-                gotExpected(option, text, "SCALE or SCALE,OFFSET, as in 1,273.15"));
+    throw Error(ErrorCode::kUsage, option, text, "SCALE or SCALE,OFFSET, as in 1,273.15");
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ constexpr double kMostPositive = 1e30;
 
 [[noreturn]] void refuse(const std::string& option, const std::string& text,
                          const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected(option, text.empty() ? "nothing" : text, expected));
+    throw Error(ErrorCode::kUsage, option, text.empty() ? "nothing" : text, expected);
 }
 
 // Takes a number only if it is the whole text, so that "12x" is never 12.

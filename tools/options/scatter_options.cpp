@@ -29,8 +29,7 @@ glm::dvec3 parseAlbedo(const std::string& option, const std::string& text) {
         if (parts.size() == 3) return {share(parts[0]), share(parts[1]), share(parts[2])};
     } catch (const Error&) {
     }
-    throw Error(ErrorCode::kUsage,
-                gotExpected(option, text, "A or R,G,B, each within 0..1, as in 0.9"));
+    throw Error(ErrorCode::kUsage, option, text, "A or R,G,B, each within 0..1, as in 0.9");
 }
 
 ScatterChoice::Lobes parseLobes(const std::string& option, const std::string& text) {
@@ -42,10 +41,9 @@ ScatterChoice::Lobes parseLobes(const std::string& option, const std::string& te
             return {lobe(option, parts[0]), lobe(option, parts[1]), number(0, 1)(option, parts[2])};
     } catch (const Error&) {
     }
-    throw Error(ErrorCode::kUsage,
-                gotExpected(option, text,
-                            "G within -0.99..0.99, or G,G2,SHARE of two lobes, SHARE of the second "
-                            "within 0..1, as in 0.8,-0.3,0.2"));
+    throw Error(ErrorCode::kUsage, option, text,
+                "G within -0.99..0.99, or G,G2,SHARE of two lobes, SHARE of the second "
+                "within 0..1, as in 0.8,-0.3,0.2");
 }
 
 ScatterChoice::SunPlace parseSky(const std::string& option, const std::string& text) {
@@ -57,11 +55,9 @@ ScatterChoice::SunPlace parseSky(const std::string& option, const std::string& t
         if (parts.size() <= 2 && sun.towards != glm::dvec3(0)) return sun;
     } catch (const Error&) {
     }
-    throw Error(
-        ErrorCode::kUsage,
-        gotExpected(option, text,
-                    "X,Y,Z, the way towards the sun, not all 0, then, if wanted, :STRENGTH, "
-                    "as in 1,2,1:4"));
+    throw Error(ErrorCode::kUsage, option, text,
+                "X,Y,Z, the way towards the sun, not all 0, then, if wanted, :STRENGTH, "
+                "as in 1,2,1:4");
 }
 
 // What turns y up into what is up, by the shortest way.

@@ -23,12 +23,11 @@ void parsePlace(const std::string& option, const std::string& text, Light& light
 // Where it comes from, then its colour, if any, then its strength, if any.
 Light parseLight(const std::string& option, const std::string& text) {
     const auto refuse = [&] {
-        return Error(ErrorCode::kUsage,
-                     gotExpected(option, text,
-                                 "head, X,Y,Z or view:X,Y,Z, numbers from -1e+30 to 1e+30 and not "
-                                 "all 0, or point:X,Y,Z or point:X,Y,Z,RADIUS, then, if wanted, "
-                                 ":R,G,B, each at least 0, and :STRENGTH, 0 to 1e+06, as in "
-                                 "view:1,-1,-1:1,0.9,0.8:1.5"));
+        return Error(ErrorCode::kUsage, option, text,
+                     "head, X,Y,Z or view:X,Y,Z, numbers from -1e+30 to 1e+30 and not "
+                     "all 0, or point:X,Y,Z or point:X,Y,Z,RADIUS, then, if wanted, "
+                     ":R,G,B, each at least 0, and :STRENGTH, 0 to 1e+06, as in "
+                     "view:1,-1,-1:1,0.9,0.8:1.5");
     };
     const std::vector<std::string> parts = splitAt(text, ':');
     std::size_t next = 0;

@@ -28,10 +28,9 @@ Parser<std::vector<glm::dvec2>> steps() {
         const auto isBefore = [](const glm::dvec2& a, const glm::dvec2& b) { return a.x < b.x; };
         if (!points.empty() && std::is_sorted(points.begin(), points.end(), isBefore))
             return points;
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(option, text,
-                                "GRADIENT:FACTOR,..., gradients of at least 0 in increasing order, "
-                                "factors within 0..1, as in 0:0,200:1"));
+        throw Error(ErrorCode::kUsage, option, text,
+                    "GRADIENT:FACTOR,..., gradients of at least 0 in increasing order, "
+                    "factors within 0..1, as in 0:0,200:1");
     };
 }
 
@@ -42,8 +41,8 @@ Parser<glm::dvec3> opaqueColor() {
         } catch (const Error&) {
             // What is said of it must not offer a fourth number.
         }
-        throw Error(ErrorCode::kUsage, gotExpected(option, text.empty() ? "nothing" : text,
-                                                   "R,G,B, three numbers of at least 0"));
+        throw Error(ErrorCode::kUsage, option, text.empty() ? "nothing" : text,
+                    "R,G,B, three numbers of at least 0");
     };
 }
 
@@ -58,11 +57,10 @@ std::optional<Surface> SurfaceChoice::of(const Volume& volume) const {
     }
     if (isLevelSet(volume) && (asked || ofLevelSets)) return surface;
     if (!asked) return {};
-    throw Error(ErrorCode::kUsage,
-                gotExpected("--surface",
-                            volume.gridClass == "unknown" ? "values that are no distances"
-                                                          : "a " + volume.gridClass,
-                            "a level set, or --isovalue V"));
+    throw Error(
+        ErrorCode::kUsage, "--surface",
+        volume.gridClass == "unknown" ? "values that are no distances" : "a " + volume.gridClass,
+        "a level set, or --isovalue V");
 }
 
 void addSurfaceOptions(CLI::App& app, SurfaceChoice& choice,

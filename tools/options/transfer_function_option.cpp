@@ -34,9 +34,8 @@ bool isLabelTable(const std::filesystem::path& file) {
         names.push_back(preset.name);
         known += (known.empty() ? "" : ", ") + preset.name;
     }
-    throw Error(ErrorCode::kUsage,
-                gotExpected("--tf", text,
-                            "a file, or one of " + known + afterStop(suggestion(text, names))));
+    throw Error(ErrorCode::kUsage, "--tf", text,
+                "a file, or one of " + known + afterStop(suggestion(text, names)));
 }
 
 }  // namespace
@@ -60,10 +59,10 @@ TransferFunction readTransferFunctionOption(const std::filesystem::path& given,
     const bool isTable = isLabelTable(option.file);
     if (isTable && option.name.empty()) return readLabelTable(option.file, listener);
     if (isTable) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--tf", given.string(),
-                                option.file.string() + " alone, a table of labels, which holds no "
-                                                       "transfer functions with names"));
+        throw Error(ErrorCode::kUsage, "--tf", given.string(),
+                    option.file.string() +
+                        " alone, a table of labels, which holds no "
+                        "transfer functions with names");
     }
     if (!option.name.empty()) return readTransferFunction(option.file, option.name, listener);
     return readTransferFunction(option.file, listener);

@@ -157,8 +157,8 @@ void openRunLog(const std::filesystem::path& file, bool asJson) {
         throw Error(error.code(), gotExpected("--log", error.what(), "a file that can be written"));
     }
     if (!isLog(opened.descriptor.get())) {
-        throw Error(ErrorCode::kUsage, gotExpected("--log", file.string() + ", which is no log",
-                                                   "a log, or no file yet"));
+        throw Error(ErrorCode::kUsage, "--log", file.string() + ", which is no log",
+                    "a log, or no file yet");
     }
     log = std::make_unique<RunLog>(file, std::move(opened), asJson);
 }

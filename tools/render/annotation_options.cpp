@@ -3,15 +3,12 @@
 
 #include <string>
 
+#include "base/refuse.h"
 #include "deltasplat/error.h"
 #include "render/render_modes.h"
 
 namespace deltasplat {
 namespace {
-
-void refuse(const std::string& option, const std::string& got, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
-}
 
 // The first option that asks for something, or none.
 std::string anyOf(const AnnotationChoice& choice) {
@@ -24,7 +21,7 @@ std::string anyOf(const AnnotationChoice& choice) {
 Parser<std::string> someText() {
     return [](const std::string& option, const std::string& text) {
         if (text.find_first_not_of(" \t") == std::string::npos)
-            refuse(option, text.empty() ? "nothing" : "spaces", "a line of text");
+            refuseUsage(option, text.empty() ? "nothing" : "spaces", "a line of text");
         return text;
     };
 }
@@ -52,20 +49,22 @@ void checkAnnotations(const RenderCommand& command) {
     const AnnotationChoice& choice = command.annotations;
     const std::string any = anyOf(choice);
     if (!any.empty() && (isExr(command) || storesValues(command))) {
-        refuse(any, command.output.string() + ", whose pixels are light or values alone",
-               "a .png (render to both)");
+        refuseUsage(any, command.output.string() + ", whose pixels are light or values alone",
+                    "a .png (render to both)");
     }
     const RenderOptions& render = command.picture.render;
     if (choice.scaleBar && render.camera.projection == Projection::kLatlong)
-        refuse("--scale-bar", "--projection latlong", "ortho or perspective, where it would hold");
+        refuseUsage("--scale-bar", "--projection latlong",
+                    "ortho or perspective, where it would hold");
     if (!choice.legend) return;
     if (render.mode == Mode::kXray || render.mode == Mode::kDrr)
-        refuse("--legend", "--mode " + modeName(render.mode) + ", which shows sums and no values",
-               "composite, mip, min or average");
+        refuseUsage("--legend",
+                    "--mode " + modeName(render.mode) + ", which shows sums and no values",
+                    "composite, mip, min or average");
     if (command.picture.surface.isovalue || command.picture.surface.asked)
-        refuse("--legend", "a surface, which has one colour", "a picture of values");
+        refuseUsage("--legend", "a surface, which has one colour", "a picture of values");
     if (render.mode == Mode::kComposite && render.optics.colorBy != ColorBy::kValue)
-        refuse("--legend", "--color-by " + colorByName(render.optics.colorBy), "value");
+        refuseUsage("--legend", "--color-by " + colorByName(render.optics.colorBy), "value");
 }
 
 }  // namespace deltasplat

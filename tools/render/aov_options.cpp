@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kShadow = "shadow";
 
 void refuse(const std::string& got, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected("--aov", got, expected));
+    throw Error(ErrorCode::kUsage, "--aov", got, expected);
 }
 
 ChannelChoice parseChannels(const std::string& option, const std::string& text) {
@@ -28,10 +28,9 @@ ChannelChoice parseChannels(const std::string& option, const std::string& text) 
         const auto number =
             std::size_t(std::find(names.begin(), names.end(), part) - names.begin());
         if (number == names.size()) {
-            throw Error(ErrorCode::kUsage,
-                        gotExpected(option, text,
-                                    "some of " + joinWords(names, "and") + ", with commas between" +
-                                        afterStop(suggestion(part, names))));
+            throw Error(ErrorCode::kUsage, option, text,
+                        "some of " + joinWords(names, "and") + ", with commas between" +
+                            afterStop(suggestion(part, names)));
         }
         if (part == kShadow) {
             channels.shadow = true;

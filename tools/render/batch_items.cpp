@@ -112,17 +112,14 @@ class Batch {
         const std::string got = file.string() + " for " + nameOfItem(items_[before]) + " and " +
                                 nameOfItem(items_[last]);
         if (!differInGrids(name, items_[before], items_[last])) {
-            throw Error(ErrorCode::kUsage,
-                        gotExpected(option, got,
-                                    "a file for each ({dir} tells folders apart, {grid} grids)"));
+            throw Error(ErrorCode::kUsage, option, got,
+                        "a file for each ({dir} tells folders apart, {grid} grids)");
         }
         for (const std::size_t i : {before, last}) {
             items_[i].output.clear();
             items_[i].stats.clear();
-            items_[i].failure =
-                Error(ErrorCode::kInput,
-                      gotExpected(items_[i].input.string(), got,
-                                  "grids whose names make a file for each (or --grid NAME)"));
+            items_[i].failure = Error(ErrorCode::kInput, items_[i].input.string(), got,
+                                      "grids whose names make a file for each (or --grid NAME)");
         }
     }
 
@@ -138,8 +135,7 @@ class Batch {
     void requireOthers(const std::string& option, const fs::path& file) const {
         if (file.empty()) return;
         const auto refuse = [&](const std::string& names) {
-            throw Error(ErrorCode::kUsage,
-                        gotExpected(option, file.string(), "another file than " + names));
+            throw Error(ErrorCode::kUsage, option, file.string(), "another file than " + names);
         };
         const auto place = placeOf(file);
         if (place && inputs_.contains(*place)) refuse("the inputs");
@@ -165,8 +161,7 @@ std::vector<BatchItem> findBatch(const RenderCommand& command, const Listener& l
     Batch batch(command);
     const FoundFiles found = findFiles(command.input, listener);
     if (found.files.empty() && found.unread.empty()) {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(command.input.string(), "no file that fits", "at least one"));
+        throw Error(ErrorCode::kInput, command.input.string(), "no file that fits", "at least one");
     }
     for (const FoundFile& one : found.files) {
         listener.report(0);
@@ -179,8 +174,8 @@ std::vector<BatchItem> findBatch(const RenderCommand& command, const Listener& l
         }
     }
     for (const auto& [folder, problem] : found.unread) {
-        batch.fail(folder, Error(ErrorCode::kInput, gotExpected(folder.string(), problem,
-                                                                "a folder that can be read")));
+        batch.fail(folder,
+                   Error(ErrorCode::kInput, folder.string(), problem, "a folder that can be read"));
     }
     return batch.take();
 }

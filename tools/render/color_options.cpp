@@ -63,7 +63,7 @@ void checkColors(const RenderCommand& command) {
     const ColorOptions& color = command.color;
     const auto refuse = [](const std::string& option, const std::string& got,
                            const std::string& expected) {
-        throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
+        throw Error(ErrorCode::kUsage, option, got, expected);
     };
     if (color.colorSpace.empty() && !color.isShown()) return;
     const std::string option = !color.colorSpace.empty()    ? "--colorspace"

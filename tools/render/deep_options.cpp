@@ -11,7 +11,7 @@ namespace deltasplat {
 namespace {
 
 void refuse(const std::string& got, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected("--deep", got, expected));
+    throw Error(ErrorCode::kUsage, "--deep", got, expected);
 }
 
 void checkHoldout(const RenderCommand& command) {
@@ -21,9 +21,8 @@ void checkHoldout(const RenderCommand& command) {
                             : !command.channels.aovs.empty() ? "--aov"
                                                              : "";
     if (got.empty()) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("--holdout-depth", got + " besides",
-                            mode != Mode::kComposite ? "--mode composite" : "one of the two"));
+    throw Error(ErrorCode::kUsage, "--holdout-depth", got + " besides",
+                mode != Mode::kComposite ? "--mode composite" : "one of the two");
 }
 
 }  // namespace

@@ -52,10 +52,9 @@ PixelBox parseRegion(const std::string& option, const std::string& text) {
         const PixelBox box{{n[0], n[1]}, {n[2] + 1, n[3] + 1}};
         if (isSane(box)) return box;
     }
-    throw Error(ErrorCode::kUsage,
-                gotExpected(option, text,
-                            "WxH+X+Y or XMIN,YMIN,XMAX,YMAX, pixels of the picture, as oiiotool "
-                            "has it"));
+    throw Error(ErrorCode::kUsage, option, text,
+                "WxH+X+Y or XMIN,YMIN,XMAX,YMAX, pixels of the picture, as oiiotool "
+                "has it");
 }
 
 OverscanChoice parseOverscan(const std::string& option, const std::string& text) {
@@ -74,9 +73,8 @@ OverscanChoice parseOverscan(const std::string& option, const std::string& text)
         }
     } catch (const Error&) {
     }
-    throw Error(ErrorCode::kUsage, gotExpected(option, text,
-                                               "N pixels, X,Y or P%, each at most " +
-                                                   std::to_string(kMostOverscan) + " (1000 %)"));
+    throw Error(ErrorCode::kUsage, option, text,
+                "N pixels, X,Y or P%, each at most " + std::to_string(kMostOverscan) + " (1000 %)");
 }
 
 // A level only where one is given.
@@ -85,8 +83,8 @@ void parseCompression(const std::string& option, const std::string& text, ExrOpt
     exr.compression = choice(exrCompressions())(option, parts[0]);
     exr.level.reset();
     if (parts.size() > 2) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(option, text, "a name, or a name, : and a level, as in dwaa:45"));
+        throw Error(ErrorCode::kUsage, option, text,
+                    "a name, or a name, : and a level, as in dwaa:45");
     }
     if (parts.size() == 2) exr.level = number()(option, parts[1]);
 }
@@ -130,8 +128,7 @@ void addExrFileOptions(CLI::App& app, RenderCommand& command) {
 void applyOverscan(RenderCommand& command) {
     if (!command.overscan.asked()) return;
     if (!isExr(command) && !command.slabs && !command.output.empty()) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--overscan", command.output.string(), "an .exr file"));
+        throw Error(ErrorCode::kUsage, "--overscan", command.output.string(), "an .exr file");
     }
     CameraOptions& camera = command.picture.render.camera;
     camera.overscanPixels = command.overscan.of(camera.sizePixels);
@@ -150,10 +147,9 @@ void checkExr(const RenderCommand& command) {
     const auto text = [](glm::ivec2 place) {
         return std::to_string(place.x) + "," + std::to_string(place.y);
     };
-    throw Error(
-        ErrorCode::kUsage,
-        gotExpected("--region", "pixels " + text(region.min) + " to " + text(region.max - 1),
-                    "all of them among the picture's, " + text(min) + " to " + text(max - 1)));
+    throw Error(ErrorCode::kUsage, "--region",
+                "pixels " + text(region.min) + " to " + text(region.max - 1),
+                "all of them among the picture's, " + text(min) + " to " + text(max - 1));
 }
 
 void warnOfUnusedExrOptions(const CLI::App& app, const RenderCommand& command,

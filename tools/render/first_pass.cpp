@@ -164,7 +164,7 @@ std::optional<std::filesystem::path> readFirstPass(const RenderCommand& command,
         runs = runsIn(json);
         warnOfOthers(json, runs, command, listener);
     } catch (const std::exception&) {
-        throw Error(ErrorCode::kInput, gotExpected(file.string(), "something else", kWritten));
+        throw Error(ErrorCode::kInput, file.string(), "something else", kWritten);
     }
     if (command.frames.missing != MissingFrames::kHold) return std::filesystem::path();
     return heldFile(runs, command.frames.frames, command.input);

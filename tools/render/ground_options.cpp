@@ -21,14 +21,13 @@ GroundChoice parseGround(const std::string& option, const std::string& text) {
         if (parts.size() <= 2 && ground.normalWorld != glm::dvec3(0)) return ground;
     } catch (const Error&) {
     }
-    throw Error(ErrorCode::kUsage,
-                gotExpected(option, text,
-                            "X,Y,Z, a point of the ground, then, if wanted, :NX,NY,NZ, its normal, "
-                            "not all 0, as in 0,-10,0:0,1,0"));
+    throw Error(ErrorCode::kUsage, option, text,
+                "X,Y,Z, a point of the ground, then, if wanted, :NX,NY,NZ, its normal, "
+                "not all 0, as in 0,-10,0:0,1,0");
 }
 
 [[noreturn]] void refuse(const std::string& got, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected("--ground", got, expected));
+    throw Error(ErrorCode::kUsage, "--ground", got, expected);
 }
 
 }  // namespace
@@ -44,8 +43,8 @@ void addGroundOption(CLI::App& app, std::optional<GroundChoice>& choice) {
 
 void checkGround(const RenderCommand& command) {
     if (command.channels.shadow && !command.ground) {
-        throw Error(ErrorCode::kUsage, gotExpected("--aov shadow", "no --ground",
-                                                   "--ground X,Y,Z, a point of what it falls on"));
+        throw Error(ErrorCode::kUsage, "--aov shadow", "no --ground",
+                    "--ground X,Y,Z, a point of what it falls on");
     }
     if (!command.ground) return;
     const Mode mode = command.picture.render.mode;

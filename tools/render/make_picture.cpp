@@ -87,9 +87,8 @@ RenderResult renderHeldOut(const std::filesystem::path& depths, const Volume& vo
     const DepthImage solid = readDepthImage(depths, listener);
     const glm::ivec2 size = options.camera.sizePixels;
     if (solid.size != size) {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(depths.string(), dimsText(solid.size) + " pixels",
-                                dimsText(size) + ", those of --size"));
+        throw Error(ErrorCode::kInput, depths.string(), dimsText(solid.size) + " pixels",
+                    dimsText(size) + ", those of --size");
     }
     DeepImage deep;
     RenderResult result = renderDeep(volume, options, kFine, deep, listener);

@@ -14,7 +14,7 @@ namespace {
 constexpr int kSmaller = 8;
 
 [[noreturn]] void refuse(const std::string& got, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected("--progressive", got, expected));
+    throw Error(ErrorCode::kUsage, "--progressive", got, expected);
 }
 
 }  // namespace

@@ -43,9 +43,8 @@ std::filesystem::path previewFile(const std::filesystem::path& output) {
 void requireFreePreview(const std::filesystem::path& file) {
     std::error_code ignored;
     if (!exists(symlink_status(file, ignored)) || isPreview(file)) return;
-    throw Error(ErrorCode::kOutput,
-                gotExpected("--progressive", file.string() + ", a file that is no preview",
-                            "no file of this name, or what a preview has left"));
+    throw Error(ErrorCode::kOutput, "--progressive", file.string() + ", a file that is no preview",
+                "no file of this name, or what a preview has left");
 }
 
 PreviewFile::PreviewFile(std::filesystem::path file)

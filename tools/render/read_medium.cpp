@@ -37,8 +37,7 @@ std::string namesOf(const std::vector<VolumeEntry>& entries) {
 
 void requireVdb(const std::filesystem::path& input, const std::string& option) {
     if (findInput(input, {}).format == InputKind::Format::kVdb) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected(option, "it with " + input.string(), "it with a .vdb input"));
+    throw Error(ErrorCode::kUsage, option, "it with " + input.string(), "it with a .vdb input");
 }
 
 // The grid that is asked for, if it is "auto" the one that names tell.
@@ -46,8 +45,8 @@ std::string chosen(const std::string& option, const std::string& asked, const st
                    const std::vector<VolumeEntry>& entries) {
     if (asked != "auto") return asked;
     if (!found.empty()) return found;
-    throw Error(ErrorCode::kInput, gotExpected(option, "auto and no grid of such a name",
-                                               "the name of one of " + namesOf(entries)));
+    throw Error(ErrorCode::kInput, option, "auto and no grid of such a name",
+                "the name of one of " + namesOf(entries));
 }
 
 class MediumReader {
@@ -106,12 +105,12 @@ class MediumReader {
         const CutChoice& parts = picture_.parts;
         if (!parts.cuts()) return part;
         if (fit_ != PartFit::kSame || part->worldFromIndex != volume_.worldFromIndex) {
-            throw Error(ErrorCode::kUsage, gotExpected(option,
-                                                       "grid " + part->name +
-                                                           ", whose voxels are others than those "
-                                                           "of " +
-                                                           volume_.name + ", which is cut",
-                                                       "grids of the same voxels, or nothing cut"));
+            throw Error(ErrorCode::kUsage, option,
+                        "grid " + part->name +
+                            ", whose voxels are others than those "
+                            "of " +
+                            volume_.name + ", which is cut",
+                        "grids of the same voxels, or nothing cut");
         }
         try {
             return std::make_shared<const Volume>(
@@ -134,13 +133,12 @@ class MediumReader {
         optics.transferFunction = readTransferFunctionOption(given, listener_);
         optics.range = range;
         if (optics.transferFunction.categorical && fit_ != PartFit::kSame) {
-            throw Error(ErrorCode::kUsage,
-                        gotExpected(option,
-                                    "labels of grid " + part.volume->name +
-                                        ", whose voxels are "
-                                        "others than those of " +
-                                        volume_.name,
-                                    "labels of the same voxels, for between two is a third"));
+            throw Error(ErrorCode::kUsage, option,
+                        "labels of grid " + part.volume->name +
+                            ", whose voxels are "
+                            "others than those of " +
+                            volume_.name,
+                        "labels of the same voxels, for between two is a third");
         }
         if (const Preset* preset = parseTransferFunction(given).preset)
             fitPreset(*preset, *whole_, optics);
@@ -218,18 +216,15 @@ void readColors(const std::string& name, const std::vector<VolumeEntry>& entries
         const auto found = std::find_if(entries.begin(), entries.end(),
                                         [&](const auto& entry) { return entry.name == name; });
         if (found == entries.end() || !isColorType(found->type)) {
-            throw Error(ErrorCode::kInput,
-                        gotExpected(kOption,
-                                    found == entries.end() ? "no grid \"" + name + "\""
-                                                           : name + " of type " + found->type,
-                                    "a vec3s or vec3d grid, or three of floats R,G,B, of " +
-                                        namesOf(entries)));
+            throw Error(ErrorCode::kInput, kOption,
+                        found == entries.end() ? "no grid \"" + name + "\""
+                                               : name + " of type " + found->type,
+                        "a vec3s or vec3d grid, or three of floats R,G,B, of " + namesOf(entries));
         }
         names = {name + ".x", name + ".y", name + ".z"};
     }
     if (names.size() != 3) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(kOption, name, "one vector grid, or three of floats R,G,B"));
+        throw Error(ErrorCode::kUsage, kOption, name, "one vector grid, or three of floats R,G,B");
     }
     ColorGrids grids;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -241,9 +236,8 @@ void readColors(const std::string& name, const std::vector<VolumeEntry>& entries
                           "; what is more than 16 is taken for it");
         }
         if (grids[c]->valueMin >= 0) continue;
-        throw Error(ErrorCode::kInput,
-                    gotExpected(kOption, names[c] + " of " + numberText(grids[c]->valueMin),
-                                "colours of at least 0"));
+        throw Error(ErrorCode::kInput, kOption, names[c] + " of " + numberText(grids[c]->valueMin),
+                    "colours of at least 0");
     }
     for (auto& grid : grids) {
         grid = reader.cut(kOption, grid);
@@ -271,22 +265,20 @@ void applyLayers(const CLI::App& app, PictureOptions& picture) {
     if (medium.layers.empty() || picture.render.mode != Mode::kComposite) return;
     const std::size_t most = medium.colorGrid ? kMostPartsWithColors : kMostParts;
     if (medium.layers.size() > most + 1) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--layer", std::to_string(medium.layers.size()) + " of them",
-                                "at most " + std::to_string(most + 1) +
-                                    (medium.colorGrid ? " with --color-grid" : "")));
+        throw Error(
+            ErrorCode::kUsage, "--layer", std::to_string(medium.layers.size()) + " of them",
+            "at most " + std::to_string(most + 1) + (medium.colorGrid ? " with --color-grid" : ""));
     }
     const auto fogs = std::ranges::count_if(medium.layers, &LayerChoice::isFog);
     if (fogs > 1 && picture.scatter.asked()) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--layer", "several that swallow light with --lighting scatter",
-                                "one, and fire"));
+        throw Error(ErrorCode::kUsage, "--layer",
+                    "several that swallow light with --lighting scatter", "one, and fire");
     }
     medium.isLayered = true;
     for (const char* option : {"--grid", "--tf", "--emission-grid", "--surface", "--isovalue"}) {
         if (!isGiven(app, option)) continue;
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--layer", std::string(option) + " besides", "one of the two"));
+        throw Error(ErrorCode::kUsage, "--layer", std::string(option) + " besides",
+                    "one of the two");
     }
     // What swallows light comes first; where nothing does, there is but fire in nothing.
     const auto fog = std::ranges::find_if(medium.layers, &LayerChoice::isFog);

@@ -232,10 +232,10 @@ RenderCommand checkFirst(const RenderCommand& command, const std::vector<BatchIt
 void checkIndex(const fs::path& index) {
     if (index.empty()) return;
     if (hasPlaceholder(index))
-        throw Error(ErrorCode::kUsage, gotExpected("--index", index.string(), "one file"));
+        throw Error(ErrorCode::kUsage, "--index", index.string(), "one file");
     const std::string extension = lowerCase(index.extension().string());
     if (extension != ".html" && extension != ".htm")
-        throw Error(ErrorCode::kUsage, gotExpected("--index", index.string(), ".html"));
+        throw Error(ErrorCode::kUsage, "--index", index.string(), ".html");
 }
 
 }  // namespace
@@ -252,7 +252,7 @@ void addBatchOptions(CLI::App& app, RenderCommand& command) {
 bool isBatch(const CLI::App& app, const RenderCommand& command) {
     const auto refuse = [](const std::string& option, const std::string& got,
                            const std::string& expected) {
-        throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
+        throw Error(ErrorCode::kUsage, option, got, expected);
     };
     const bool hasFrames = command.frames.asked() && FrameName::findInput(command.input);
     if (!hasFrames && isPattern(command.input)) {

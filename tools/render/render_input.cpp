@@ -71,26 +71,22 @@ void checkSurface(const PictureOptions& picture) {
     const std::string option = picture.surface.isovalue ? "--isovalue" : "--surface";
     const Optics& optics = picture.render.optics;
     if (optics.colorBy != ColorBy::kValue) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(option, "--color-by " + colorByName(optics.colorBy) + " besides",
-                                "--color-by value"));
+        throw Error(ErrorCode::kUsage, option,
+                    "--color-by " + colorByName(optics.colorBy) + " besides", "--color-by value");
     }
     if (picture.surface.isFogGiven) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(option, "--level-set fog besides", "--level-set keep"));
+        throw Error(ErrorCode::kUsage, option, "--level-set fog besides", "--level-set keep");
     }
     if (optics.gradientOpacity.empty()) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected(option, "--gradient-opacity besides", "one of the two"));
+    throw Error(ErrorCode::kUsage, option, "--gradient-opacity besides", "one of the two");
 }
 
 // Surfaces know no other lights.
 void checkDistant(const std::vector<Light>& lights) {
     for (const Light& light : lights) {
         if (!light.positionWorld) continue;
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--light", "point:X,Y,Z without --lighting scatter",
-                                "head, X,Y,Z or view:X,Y,Z"));
+        throw Error(ErrorCode::kUsage, "--light", "point:X,Y,Z without --lighting scatter",
+                    "head, X,Y,Z or view:X,Y,Z");
     }
 }
 
@@ -109,18 +105,16 @@ void checkFog(const PictureOptions& picture) {
                           : picture.surface.asked                ? "--surface besides"
                           : !optics.gradientOpacity.empty()      ? "--gradient-opacity besides"
                                                                  : nullptr;
-    if (besides) throw Error(ErrorCode::kUsage, gotExpected(option, besides, "one of the two"));
+    if (besides) throw Error(ErrorCode::kUsage, option, besides, "one of the two");
     if (optics.colorBy != ColorBy::kValue) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(option, "--color-by " + colorByName(optics.colorBy) + " besides",
-                                "--color-by value"));
+        throw Error(ErrorCode::kUsage, option,
+                    "--color-by " + colorByName(optics.colorBy) + " besides", "--color-by value");
     }
     if (!picture.scatter.asked()) return;
     for (const Light& light : picture.shading.lights) {
         if (light.frame == LightFrame::kWorld) continue;
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--light", "head or view:X,Y,Z with --lighting scatter",
-                                "X,Y,Z, the way that light travels in the world, or point:X,Y,Z"));
+        throw Error(ErrorCode::kUsage, "--light", "head or view:X,Y,Z with --lighting scatter",
+                    "X,Y,Z, the way that light travels in the world, or point:X,Y,Z");
     }
 }
 
@@ -129,11 +123,10 @@ void checkEmissionLights(const PictureOptions& picture) {
     if (!picture.medium.emissionLights || picture.render.mode != Mode::kComposite) return;
     const bool burns = picture.medium.burns();
     if (burns && picture.scatter.asked()) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("--emission-lights",
-                            burns ? "it without --lighting scatter" : "it without fire",
-                            burns ? "--lighting scatter, fog that they light"
-                                  : "--emission-grid, or a --layer shown as fire"));
+    throw Error(ErrorCode::kUsage, "--emission-lights",
+                burns ? "it without --lighting scatter" : "it without fire",
+                burns ? "--lighting scatter, fog that they light"
+                      : "--emission-grid, or a --layer shown as fire");
 }
 
 // Where values are all on one side, there is nothing to see but where the volume ends.
@@ -174,9 +167,8 @@ RenderOptions readOptics(const PictureOptions& picture, const Listener& listener
     options.splat.mostJoined = picture.join.value_or(kMostJoined);
     const ColorBy colorBy = options.optics.colorBy;
     if (picture.shading.asked() && !isFog(picture) && colorBy != ColorBy::kValue) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--shade", "--color-by " + colorByName(colorBy) + " besides",
-                                "--color-by value"));
+        throw Error(ErrorCode::kUsage, "--shade", "--color-by " + colorByName(colorBy) + " besides",
+                    "--color-by value");
     }
     checkSurface(picture);
     checkFog(picture);

@@ -64,9 +64,8 @@ void checkNumbers(const RenderCommand& command) {
     const ImageFormat format = formatOf(command);
     const bool hasPlaces = format == ImageFormat::kNrrd || format == ImageFormat::kMetaImage;
     if (!hasPlaces || command.picture.render.camera.projection != Projection::kLatlong) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("--output", command.output.string() + " with --projection latlong",
-                            "a flat picture, or .npy"));
+    throw Error(ErrorCode::kUsage, "--output",
+                command.output.string() + " with --projection latlong", "a flat picture, or .npy");
 }
 
 bool showsWindow(const RenderCommand& command) {
@@ -83,14 +82,14 @@ std::optional<glm::dvec2> windowAsked(const RenderCommand& command) {
 void applyMode(const CLI::App& app, RenderCommand& command) {
     Mode& mode = command.picture.render.mode;
     if (command.drr && isGiven(app, "--mode") && mode != Mode::kDrr) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--drr", "--mode " + modeName(mode) + " besides", "--mode drr"));
+        throw Error(ErrorCode::kUsage, "--drr", "--mode " + modeName(mode) + " besides",
+                    "--mode drr");
     }
     if (command.drr) mode = Mode::kDrr;
     if (mode == Mode::kComposite && !command.output.empty() && isOfNumbers(formatOf(command))) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--output", command.output.string() + " with --mode composite",
-                                "a mode of numbers: xray, mip, min, average or drr"));
+        throw Error(ErrorCode::kUsage, "--output",
+                    command.output.string() + " with --mode composite",
+                    "a mode of numbers: xray, mip, min, average or drr");
     }
     if (holdsNumbers(command)) command.image.numbers = true;
     // Nothing is no number there; sums are 0.

@@ -35,17 +35,16 @@ namespace {
 // One of some values, by their names.
 template <typename T, typename NameOf>
 Parser<T> named(std::vector<T> values, const NameOf& nameOf) {
-    return [values = std::move(values), nameOf](const std::string& option,
-                                                const std::string& text) {
-        std::vector<std::string> names;
-        for (const T value : values) {
-            if (nameOf(value) == text) return value;
-            names.push_back(nameOf(value));
-        }
-        throw Error(
-            ErrorCode::kUsage,
-            gotExpected(option, text, joinWords(names, "or") + afterStop(suggestion(text, names))));
-    };
+    return
+        [values = std::move(values), nameOf](const std::string& option, const std::string& text) {
+            std::vector<std::string> names;
+            for (const T value : values) {
+                if (nameOf(value) == text) return value;
+                names.push_back(nameOf(value));
+            }
+            throw Error(ErrorCode::kUsage, option, text,
+                        joinWords(names, "or") + afterStop(suggestion(text, names)));
+        };
 }
 
 Parser<Method> method() {
@@ -84,10 +83,9 @@ Parser<std::int64_t> bits() {
 Parser<double> resolution() {
     return [](const std::string& option, const std::string& text) {
         if (text == "1/2" || text == "1/4" || text == "1/8" || text.starts_with("0."))
-            throw Error(ErrorCode::kUsage,
-                        gotExpected(option, text,
-                                    "1 or more: voxels that share a pixel are softer, not faster; "
-                                    "a smaller --size is"));
+            throw Error(ErrorCode::kUsage, option, text,
+                        "1 or more: voxels that share a pixel are softer, not faster; "
+                        "a smaller --size is");
         return double(wholeNumber(1, kMaxResolution)(option, text));
     };
 }
@@ -109,8 +107,8 @@ Parser<double> relativeTolerance() {
     return [](const std::string& option, const std::string& text) {
         const double value = number(0)(option, text);
         if (value < 1) return value;
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(option, text, "a finite number of at least 0 and less than 1"));
+        throw Error(ErrorCode::kUsage, option, text,
+                    "a finite number of at least 0 and less than 1");
     };
 }
 
@@ -119,8 +117,8 @@ void listPresets(const std::string& file, bool isMoreGiven) {
     if (file.empty()) return printOut(presetList());
     std::error_code ignored;
     if (isMoreGiven && std::filesystem::exists(file, ignored)) {
-        throw Error(ErrorCode::kUsage, gotExpected("--list-tf", file + " (a file that exists)",
-                                                   "a new one, or no other options"));
+        throw Error(ErrorCode::kUsage, "--list-tf", file + " (a file that exists)",
+                    "a new one, or no other options");
     }
     writeDrawing(file, presetSwatches());
 }

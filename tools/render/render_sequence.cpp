@@ -347,9 +347,9 @@ void fixWindow(const std::vector<FrameFiles>& frames, bool isKnown, SequenceLook
     if (!choosesWindow(command)) return;
     if (!look.window()) {
         if (isKnown) {
-            throw Error(ErrorCode::kInput,
-                        gotExpected(command.firstPass.string(), "no values of black and white",
-                                    "what --first-pass has written with the same --mode"));
+            throw Error(ErrorCode::kInput, command.firstPass.string(),
+                        "no values of black and white",
+                        "what --first-pass has written with the same --mode");
         }
         look.setWindow(sequenceWindow(
             frames, [&](std::size_t i) { return commandOf(command, frames[i], {}); }, look,
@@ -392,12 +392,11 @@ void applySequence(const CLI::App& app, RenderCommand& command) {
     const bool hasPoses = !choice.posesFile.empty();
     if (command.turntable &&
         (choice.asked() || hasPoses || command.picture.render.camera.worldFromCamera)) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--turntable",
-                                std::string("it and ") + (choice.asked() ? "--camera"
-                                                          : hasPoses     ? "--poses"
-                                                                         : "--camera-matrix"),
-                                "a camera that options turn"));
+        throw Error(ErrorCode::kUsage, "--turntable",
+                    std::string("it and ") + (choice.asked() ? "--camera"
+                                              : hasPoses     ? "--poses"
+                                                             : "--camera-matrix"),
+                    "a camera that options turn");
     }
     if (command.turntable && !command.frames.asked())
         useFrames("--turntable", std::size_t(*command.turntable), command.frames);

@@ -17,8 +17,8 @@ std::optional<FileAndName> sceneOf(const std::filesystem::path& input) {
     const bool isNamed = text.find(".usda:") != std::string::npos;
     if (ending != ".usda" && !isNamed) {
         if (ending != ".usd" && ending != ".usdc" && ending != ".usdz") return {};
-        throw Error(ErrorCode::kInput, gotExpected(text, "USD that is no text",
-                                                   ".usda, as usdcat -o x.usda writes it"));
+        throw Error(ErrorCode::kInput, text, "USD that is no text",
+                    ".usda, as usdcat -o x.usda writes it");
     }
     const std::optional<FileAndName> found = findFileAndName("INPUT", input);
     return found ? found : FileAndName{input, ""};
@@ -100,8 +100,7 @@ void showFrame(std::optional<int> frame, const std::filesystem::path& input,
     const UsdVolume volume = volumeAt(scene, frame);
     if (input.empty()) command.input = volume.file;
     if (command.input.empty() || command.input == missingFile(scene)) {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(scene.file.string(), "no filePath of a volume", "a .vdb"));
+        throw Error(ErrorCode::kInput, scene.file.string(), "no filePath of a volume", "a .vdb");
     }
     command.picture.worldFromInput = volume.worldFromVolume;
     if (scene.isGridGiven) return;

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "base/memory.h"
+#include "base/refuse.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "formats/name_signs.h"
@@ -18,35 +19,30 @@
 namespace deltasplat {
 namespace {
 
-[[noreturn]] void refuse(const std::string& option, const std::string& got,
-                         const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected(option, got, expected));
-}
-
 void checkSheet(const CLI::App& app, RenderCommand& command, std::size_t pictures) {
     const glm::ivec2 cells = *command.contactSheet;
     const std::size_t count = pictures > 0 ? pictures : command.frames.frames.size();
     const auto room = std::size_t(cells.x) * std::size_t(cells.y);
     if (count > room) {
-        refuse("--contact-sheet",
-               dimsText(cells) + " for " + std::to_string(count) +
-                   (pictures > 0 ? " pictures" : " frames"),
-               "room for all of them");
+        refuseUsage("--contact-sheet",
+                    dimsText(cells) + " for " + std::to_string(count) +
+                        (pictures > 0 ? " pictures" : " frames"),
+                    "room for all of them");
     }
     if (FrameName::find(command.output))
-        refuse("--output", command.output.string() + " with --contact-sheet", "one file");
+        refuseUsage("--output", command.output.string() + " with --contact-sheet", "one file");
     command.output = plainName(command.output);
     for (const char* option :
          {"--aov", "--deep", "--stats", "--region", "--overscan", "--autocrop", "--progressive"}) {
         if (isGiven(app, option))
-            refuse("--contact-sheet", option + std::string(" besides"), "one of them");
+            refuseUsage("--contact-sheet", option + std::string(" besides"), "one of them");
     }
     const glm::i64vec2 size =
         glm::i64vec2(cells) * glm::i64vec2(command.picture.render.camera.sizePixels);
     constexpr std::int64_t kMostSide = 1'000'000;
     if (std::max(size.x, size.y) > kMostSide) {
-        refuse("--contact-sheet", dimsText(size) + " pixels",
-               "at most " + std::to_string(kMostSide) + " each way");
+        refuseUsage("--contact-sheet", dimsText(size) + " pixels",
+                    "at most " + std::to_string(kMostSide) + " each way");
     }
     checkImageFile(command.output, glm::ivec2(size), command.image);
     requireMemory("--contact-sheet", 16.0 * double(size.x) * double(size.y));
@@ -57,12 +53,13 @@ void checkMovieOf(const CLI::App& app, RenderCommand& command) {
     command.isMovieAlone = command.output.empty();
     if (command.isMovieAlone) command.output = command.movie;
     if (isExr(command))
-        refuse("--movie", "an .exr besides, which shows light as it is", "-o with a .png, or none");
+        refuseUsage("--movie", "an .exr besides, which shows light as it is",
+                    "-o with a .png, or none");
     if (storesValues(command))
-        refuse("--movie", "numbers besides, which no movie shows", "-o with a .png, or none");
+        refuseUsage("--movie", "numbers besides, which no movie shows", "-o with a .png, or none");
     if (!command.isMovieAlone) return;
     for (const char* option : {"--float", "--bits", "--progressive", "--region"})
-        if (isGiven(app, option)) refuse(option, "a movie alone", "-o with pictures");
+        if (isGiven(app, option)) refuseUsage(option, "a movie alone", "-o with pictures");
 }
 
 }  // namespace
@@ -87,22 +84,23 @@ void applySinks(const CLI::App& app, RenderCommand& command, std::size_t picture
     const bool isSingle = !command.frames.asked() && pictures == 0;
     for (const char* option : {"--contact-sheet", "--movie", "--slate"})
         if (isSingle && isGiven(app, option))
-            refuse(option, "one picture", "several (--frames, --turntable, or a batch)");
+            refuseUsage(option, "one picture", "several (--frames, --turntable, or a batch)");
     const bool isLookAlone = command.frames.asked() && !command.firstPass.empty();
     if (command.output.empty() && command.movie.empty() && !isLookAlone)
-        refuse("--output", "nothing", "FILE (see 'deltasplat render --help')");
+        refuseUsage("--output", "nothing", "FILE (see 'deltasplat render --help')");
     if (isGiven(app, "--fps") && command.movie.empty())
-        refuse("--fps", "it without --movie", "a movie to make");
+        refuseUsage("--fps", "it without --movie", "a movie to make");
     if (command.contactSheet && !command.movie.empty())
-        refuse("--contact-sheet", "--movie besides", "one of them");
+        refuseUsage("--contact-sheet", "--movie besides", "one of them");
     if (command.slate && (isExr(command) || storesValues(command))) {
-        refuse("--slate", command.output.string() + ", whose pixels are light or values alone",
-               "a .png (render to both)");
+        refuseUsage("--slate", command.output.string() + ", whose pixels are light or values alone",
+                    "a .png (render to both)");
     }
     if (command.frames.missing == MissingFrames::kBlack) {
         for (const char* option : {"--aov", "--deep", "--overscan", "--stats"}) {
             if (isGiven(app, option))
-                refuse("--missing", std::string("black with ") + option, "error, skip or hold");
+                refuseUsage("--missing", std::string("black with ") + option,
+                            "error, skip or hold");
         }
     }
     if (command.contactSheet) checkSheet(app, command, pictures);
@@ -110,7 +108,7 @@ void applySinks(const CLI::App& app, RenderCommand& command, std::size_t picture
     if (!command.contactSheet && command.movie.empty()) return;
     for (const char* option : {"--skip-existing", "--update"})
         if (isGiven(app, option))
-            refuse(option, "a sheet or movie of all frames", "pictures of their own");
+            refuseUsage(option, "a sheet or movie of all frames", "pictures of their own");
 }
 
 SequenceSinks::SequenceSinks(const RenderCommand& command,

@@ -52,11 +52,11 @@ SlabShare parseShare(const std::string& option, const std::string& text) {
         }
     } catch (const Error&) {
     }
-    throw Error(ErrorCode::kUsage, gotExpected(option, text, expectedShares(text)));
+    throw Error(ErrorCode::kUsage, option, text, expectedShares(text));
 }
 
 [[noreturn]] void refuse(const std::string& got, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected("--slab-range", got, expected));
+    throw Error(ErrorCode::kUsage, "--slab-range", got, expected);
 }
 
 // Names of an option as users write it.

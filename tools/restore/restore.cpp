@@ -49,16 +49,15 @@ void requireVdb(const std::filesystem::path& input) {
     const InputKind kind = findInput(input, {});
     if (kind.format == InputKind::Format::kVdb) return;
     if (inputsAreConfined()) requireConfined(input);
-    throw Error(ErrorCode::kInput, gotExpected(input.string(), "another format",
-                                               "a .vdb of delta grids (convert takes other "
-                                               "formats)"));
+    throw Error(ErrorCode::kInput, input.string(), "another format",
+                "a .vdb of delta grids (convert takes other "
+                "formats)");
 }
 
 void requireDeltas(const std::filesystem::path& input, const Volume& volume) {
     if (volume.origin) return;
-    throw Error(ErrorCode::kInput, gotExpected(input.string() + ": grid \"" + volume.name + "\"",
-                                               "a grid of type " + volume.type,
-                                               "a delta grid (convert takes other grids)"));
+    throw Error(ErrorCode::kInput, input.string() + ": grid \"" + volume.name + "\"",
+                "a grid of type " + volume.type, "a delta grid (convert takes other grids)");
 }
 
 // The delta grids that the output can hold, by name. Without any, reading says what is wrong.

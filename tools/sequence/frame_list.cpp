@@ -59,15 +59,12 @@ Parser<std::vector<int>> frameList() {
         for (const std::string& part : splitAt(text, ',')) {
             const auto range = rangeOf(part);
             if (!range) {
-                throw Error(
-                    ErrorCode::kUsage,
-                    gotExpected(option, text,
-                                "frames such as 1-100, 1-100x2, 100-1, -5--1 or 1,4,10-20"));
+                throw Error(ErrorCode::kUsage, option, text,
+                            "frames such as 1-100, 1-100x2, 100-1, -5--1 or 1,4,10-20");
             }
             if (range->count() + std::int64_t(frames.size()) > std::int64_t(kMostFrames)) {
-                throw Error(ErrorCode::kUsage,
-                            gotExpected(option, text,
-                                        "at most " + std::to_string(kMostFrames) + " frames"));
+                throw Error(ErrorCode::kUsage, option, text,
+                            "at most " + std::to_string(kMostFrames) + " frames");
             }
             for (std::int64_t i = 0; i < range->count(); ++i)
                 if (known.insert(range->at(i)).second) frames.push_back(range->at(i));

@@ -27,8 +27,7 @@ constexpr const char* kFrameName = "a name with ####, %04d, @ or $F4 for the num
 
 [[noreturn]] void refuseName(const FrameChoice& choice, const std::string& option,
                              const std::filesystem::path& name) {
-    throw Error(ErrorCode::kUsage,
-                gotExpected(option, name.string() + " with " + choice.askedBy, kFrameName));
+    throw Error(ErrorCode::kUsage, option, name.string() + " with " + choice.askedBy, kFrameName);
 }
 
 void sayFolder(const FrameName& name, const std::string& option, const Listener& listener) {
@@ -44,8 +43,8 @@ void refuseOptionsOfFrames(const CLI::App& app) {
 }
 
 [[noreturn]] void refuseAlone(const std::string& option, const std::filesystem::path& file) {
-    throw Error(ErrorCode::kUsage, gotExpected(option, file.string() + " without --frames",
-                                               "--frames with it, as in --frames 1-100"));
+    throw Error(ErrorCode::kUsage, option, file.string() + " without --frames",
+                "--frames with it, as in --frames 1-100");
 }
 
 }  // namespace
@@ -56,14 +55,12 @@ FrameName frameNameOf(const FrameChoice& choice, const std::string& option,
     if (found) return *found;
     std::filesystem::path named = file.filename();
     named.replace_extension(".####" + file.extension().string());
-    throw Error(ErrorCode::kUsage,
-                gotExpected(option, file.string() + " with " + choice.askedBy,
-                            std::string(kFrameName) + ", such as " + named.string()));
+    throw Error(ErrorCode::kUsage, option, file.string() + " with " + choice.askedBy,
+                std::string(kFrameName) + ", such as " + named.string());
 }
 
 void refuseWithoutFrames(const std::string& option) {
-    throw Error(ErrorCode::kUsage,
-                gotExpected(option, "it without --frames", "the frames of a sequence"));
+    throw Error(ErrorCode::kUsage, option, "it without --frames", "the frames of a sequence");
 }
 
 void addFrameOptions(CLI::App& app, FrameChoice& choice, bool arePictures) {
@@ -128,11 +125,10 @@ std::vector<FrameFiles> filesOfFrames(const FrameChoice& choice, const std::file
             {frame, inputName ? inputName->inputAt(frame) : input, outputName.at(frame)});
         const auto [known, isNew] = outputs.emplace(files.back().output, frame);
         if (isNew) continue;
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(outputOption,
-                                known->first.string() + " for frames " +
-                                    std::to_string(known->second) + " and " + std::to_string(frame),
-                                "a file for each"));
+        throw Error(ErrorCode::kUsage, outputOption,
+                    known->first.string() + " for frames " + std::to_string(known->second) +
+                        " and " + std::to_string(frame),
+                    "a file for each");
     }
     return files;
 }

@@ -98,8 +98,7 @@ std::vector<FrameFiles> withInputs(const std::vector<FrameFiles>& frames, Missin
 }
 
 void refuseWithoutInputs(const fs::path& input) {
-    throw Error(ErrorCode::kInput,
-                gotExpected(input.string(), "no file of any frame", "at least one"));
+    throw Error(ErrorCode::kInput, input.string(), "no file of any frame", "at least one");
 }
 
 void requireInputs(const std::vector<FrameFiles>& frames) {
@@ -107,11 +106,10 @@ void requireInputs(const std::vector<FrameFiles>& frames) {
     std::copy_if(frames.begin(), frames.end(), std::back_inserter(absent),
                  [](const FrameFiles& frame) { return !hasInput(frame.input); });
     if (absent.empty() || frames.front().input == frames.back().input) return;
-    throw Error(ErrorCode::kInput,
-                gotExpected(absent.front().input.string(),
-                            "no such file (" + std::to_string(absent.size()) + " of " +
-                                std::to_string(frames.size()) + " frames have none)",
-                            "one of each, or --missing skip, hold or black"));
+    throw Error(ErrorCode::kInput, absent.front().input.string(),
+                "no such file (" + std::to_string(absent.size()) + " of " +
+                    std::to_string(frames.size()) + " frames have none)",
+                "one of each, or --missing skip, hold or black");
 }
 
 void requireOwnOutputs(const std::string& option, const std::vector<FrameFiles>& frames,

@@ -101,13 +101,12 @@ void closeIt(int& descriptor) {
 void checkMovie(const std::filesystem::path& file, glm::ivec2 sizePixels) {
     const std::string extension = lowerExtension(file);
     if (extension != ".mp4" && extension != ".m4v" && extension != ".mkv" && extension != ".mov") {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--movie", file.string(), ".mp4, .m4v, .mkv or .mov"));
+        throw Error(ErrorCode::kUsage, "--movie", file.string(), ".mp4, .m4v, .mkv or .mov");
     }
     if (!isProRes(file) && (sizePixels.x % 2 != 0 || sizePixels.y % 2 != 0)) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("--size", dimsText(sizePixels) + " with --movie " + file.string(),
-                                "an even width and height, or a .mov"));
+        throw Error(ErrorCode::kUsage, "--size",
+                    dimsText(sizePixels) + " with --movie " + file.string(),
+                    "an even width and height, or a .mov");
     }
 }
 
@@ -156,10 +155,9 @@ void Movie::start(glm::ivec2 size, double framesPerSecond) {
     pid_ = -1;
     closeIt(frames_);
     closeIt(messages_);
-    throw Error(
-        ErrorCode::kOutput,
-        gotExpected("--movie", "no program ffmpeg (" + std::string(std::strerror(error)) + ")",
-                    "it on the path (Debian: apt install ffmpeg)"));
+    throw Error(ErrorCode::kOutput, "--movie",
+                "no program ffmpeg (" + std::string(std::strerror(error)) + ")",
+                "it on the path (Debian: apt install ffmpeg)");
 }
 
 Movie::Bytes Movie::bytesOf(const Image& image) const {

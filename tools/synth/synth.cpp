@@ -32,9 +32,8 @@ Parser<glm::ivec3> sampleDimensions() {
         constexpr std::int64_t kMax = std::numeric_limits<int>::max();
         for (int axis = 0; axis < 3; ++axis) {
             if (dims[axis] < 1 || dims[axis] > kMax) {
-                throw Error(ErrorCode::kUsage, gotExpected(option, text,
-                                                           "AxBxC, three whole numbers from 1 to " +
-                                                               std::to_string(kMax)));
+                throw Error(ErrorCode::kUsage, option, text,
+                            "AxBxC, three whole numbers from 1 to " + std::to_string(kMax));
             }
         }
         return glm::ivec3(dims);

@@ -55,17 +55,16 @@ void refuseOptionsOfBench(const CLI::App& bench) {
     const CLI::Option* const threads = bench.get_option("--threads");
     for (const CLI::Option* option : bench.get_options()) {
         if (option->count() == 0 || option->get_group() == threads->get_group()) continue;
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(option->get_name(), "a place before table1",
-                                "options of 'deltasplat bench table1' behind it"));
+        throw Error(ErrorCode::kUsage, option->get_name(), "a place before table1",
+                    "options of 'deltasplat bench table1' behind it");
     }
 }
 
 void checkThreads(const CLI::App& app, int threads) {
     for (const CLI::App* at = &app; at != nullptr; at = at->get_parent()) {
         if (!isGiven(*at, "--threads") || threads == 1) continue;
-        throw Error(ErrorCode::kUsage, gotExpected("--threads", std::to_string(threads),
-                                                   "1, as Table 1 is measured with one thread"));
+        throw Error(ErrorCode::kUsage, "--threads", std::to_string(threads),
+                    "1, as Table 1 is measured with one thread");
     }
 }
 

@@ -38,10 +38,9 @@ bool isNew(const fs::path& folder, std::set<fs::path>& visited) {
 std::map<std::string, fs::path> findTable1Files(const fs::path& folder, const Listener& listener) {
     std::error_code failure;
     if (!fs::is_directory(folder, failure)) {
-        throw Error(
-            ErrorCode::kInput,
-            gotExpected(folder.string(), fs::exists(folder, failure) ? "a file" : "no such folder",
-                        "a folder that holds data sets"));
+        throw Error(ErrorCode::kInput, folder.string(),
+                    fs::exists(folder, failure) ? "a file" : "no such folder",
+                    "a folder that holds data sets");
     }
     std::map<std::string, fs::path> files;
     std::set<fs::path> visited;

@@ -53,7 +53,7 @@ class JsonCamera {
   private:
     [[noreturn]] void fail(const LocatedJson& at, const std::string& got,
                            const std::string& expected) const {
-        throw Error(ErrorCode::kInput, gotExpected(whereOf(at), got, expected));
+        throw Error(ErrorCode::kInput, whereOf(at), got, expected);
     }
 
     std::string whereOf(const LocatedJson& at) const {

@@ -19,16 +19,15 @@ CameraMotion readCamera(const std::filesystem::path& file, const std::string& na
     const std::string ending = lowerCase(file.extension().string());
     if (ending == ".usda") return readUsdCamera(file, name, listener);
     if (!name.empty()) {
-        throw Error(ErrorCode::kInput, gotExpected(file.string() + ":" + name, "no .usda",
-                                                   "a name behind a .usda's only"));
+        throw Error(ErrorCode::kInput, file.string() + ":" + name, "no .usda",
+                    "a name behind a .usda's only");
     }
     if (ending == ".json") return readJsonCamera(file);
     if (ending == ".exr") return readExrCamera(file, listener);
     const bool isOtherUsd = ending == ".usd" || ending == ".usdc" || ending == ".usdz";
-    throw Error(
-        ErrorCode::kInput,
-        gotExpected(file.string(), isOtherUsd ? "USD that is no text" : "an unknown ending",
-                    isOtherUsd ? ".usda, as usdcat -o x.usda writes it" : ".json, .usda or .exr"));
+    throw Error(ErrorCode::kInput, file.string(),
+                isOtherUsd ? "USD that is no text" : "an unknown ending",
+                isOtherUsd ? ".usda, as usdcat -o x.usda writes it" : ".json, .usda or .exr");
 }
 
 }  // namespace deltasplat

@@ -76,9 +76,8 @@ class UsdCamera {
 
     [[noreturn]] void fail(const UsdValue& value, const std::string& name,
                            const std::string& expected) const {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(layer_.file.string() + ":" + std::to_string(value.line),
-                                value.quoted() + " for " + name, expected));
+        throw Error(ErrorCode::kInput, layer_.file.string() + ":" + std::to_string(value.line),
+                    value.quoted() + " for " + name, expected);
     }
 
     // Null where it is not written or blocked.

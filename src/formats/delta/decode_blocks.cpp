@@ -135,11 +135,10 @@ std::optional<std::vector<SlotBlock>> TaskDecoder::decode(std::span<const Task> 
     if (!isSound) return std::nullopt;
     for (const auto& [part, problem] : problems) {
         if (!part) continue;
-        throw Error(
-            ErrorCode::kInput,
-            gotExpected(grid_.where, problem + " from " + beginText(grid_.layout, *part) + " on",
-                        std::to_string(part->lowest) + ".." + std::to_string(part->highest) +
-                            ", as the stream says"));
+        throw Error(ErrorCode::kInput, grid_.where,
+                    problem + " from " + beginText(grid_.layout, *part) + " on",
+                    std::to_string(part->lowest) + ".." + std::to_string(part->highest) +
+                        ", as the stream says");
     }
     std::size_t count = 0;
     for (const auto& some : blocks) count += some.size();
@@ -231,7 +230,7 @@ class PartMaker : public BlockMaker {
         }
         // Of other columns the index has been checked.
         if (header_->restActive && deltas_->knownCodes()->all.histogram[rules_.rest - 1] == 0)
-            throw Error(ErrorCode::kInput, gotExpected(where, "no voxels that rest", "some"));
+            throw Error(ErrorCode::kInput, where, "no voxels that rest", "some");
     }
 
     const std::vector<Part>& parts() const override { return parts_; }
@@ -271,9 +270,9 @@ class PartMaker : public BlockMaker {
         const auto first = std::find_if(parts.begin(), parts.end(), isDamaged);
         // Together they may have more voxels than each alone.
         const DeltaPart& part = first == parts.end() ? parts.front() : *first;
-        throw Error(ErrorCode::kInput,
-                    gotExpected(where_, "damaged deltas from " + beginText(layout_, part) + " on",
-                                "deltas that add up to codes"));
+        throw Error(ErrorCode::kInput, where_,
+                    "damaged deltas from " + beginText(layout_, part) + " on",
+                    "deltas that add up to codes");
     }
 
     std::shared_ptr<const DeltaHeader> header_;
@@ -295,7 +294,7 @@ bool mayDecodeBlocks(const DeltaHeader& header) {
 
 void requireKnownCodes(const CodesInUse& said, const CodesInUse& found, const std::string& where) {
     const auto refuse = [&](const std::string& got, const std::string& expected) {
-        throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
+        throw Error(ErrorCode::kInput, where, got, expected);
     };
     if (found.histogram != said.histogram)
         refuse("voxels of other codes, or other numbers of them", "those that the stream says");

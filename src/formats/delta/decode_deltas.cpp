@@ -13,6 +13,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/refuse.h"
 #include "base/sorting.h"
 #include "deltasplat/error.h"
 #include "formats/delta/delta_columns.h"
@@ -25,11 +26,6 @@
 
 namespace deltasplat {
 namespace {
-
-[[noreturn]] void fail(const std::string& where, const std::string& got,
-                       const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
-}
 
 // A block's place in (slice, u, v) order, divided by 8.
 template <typename DeltaLeaf>
@@ -146,7 +142,8 @@ class Decoder {
             if (!header_.box.empty() && block[axis] >= first_[axis] >> 3 &&
                 block[axis] <= last_[axis] >> 3)
                 continue;
-            fail(where_, "deltas at " + placeText(8 * block), "deltas within the box " + boxText());
+            refuseInput(where_, "deltas at " + placeText(8 * block),
+                        "deltas within the box " + boxText());
         }
     }
 
@@ -199,11 +196,13 @@ class Decoder {
 
     void requireSlot(Slot slot, const glm::ivec3& place) const {
         if (!isInside(place))
-            fail(where_, "a delta at " + placeText(place), "deltas within the box " + boxText());
+            refuseInput(where_, "a delta at " + placeText(place),
+                        "deltas within the box " + boxText());
         const bool isNumber = Slot(slot - Words::firstInactive()) < inactiveValues_;
         if (slot == 0 || words_.isValue(slot) || isNumber) return;
-        fail(where_, "deltas that lead to " + words_.textOf(slot) + " at " + placeText(place),
-             words_.expected());
+        refuseInput(where_,
+                    "deltas that lead to " + words_.textOf(slot) + " at " + placeText(place),
+                    words_.expected());
     }
 
     Block<Words> decodeBlock(const glm::ivec3& position, const DeltaLeaf* leaf,
@@ -298,16 +297,17 @@ template <typename DeltaLeaf, typename Words>
 void checkSlabs(const std::vector<const DeltaLeaf*>& leaves, const Decoder<Words>& decoder,
                 const DeltaHeader& header, const std::string& where) {
     if (std::int64_t(header.slabDeltas.size()) != decoder.slabs()) {
-        fail(where, std::to_string(header.slabDeltas.size()) + " slabs in \"delta_slab_deltas\"",
-             std::to_string(decoder.slabs()));
+        refuseInput(where,
+                    std::to_string(header.slabDeltas.size()) + " slabs in \"delta_slab_deltas\"",
+                    std::to_string(decoder.slabs()));
     }
     std::vector<std::uint64_t> found(header.slabDeltas.size());
     for (const DeltaLeaf* leaf : leaves)
         found[std::size_t(decoder.slabOf(blockOf(*leaf).x))] += leaf->onVoxelCount();
     for (std::size_t slab = 0; slab < found.size(); ++slab) {
         if (found[slab] == header.slabDeltas[slab]) continue;
-        fail(where, std::to_string(found[slab]) + " deltas in slab " + std::to_string(slab),
-             std::to_string(header.slabDeltas[slab]) + ", as \"delta_slab_deltas\" says");
+        refuseInput(where, std::to_string(found[slab]) + " deltas in slab " + std::to_string(slab),
+                    std::to_string(header.slabDeltas[slab]) + ", as \"delta_slab_deltas\" says");
     }
 }
 
@@ -347,8 +347,8 @@ class Collector {
         if (block.tile != 0 && block.tile < Words::firstInactive())
             active_ += Tree::LeafNodeType::SIZE;
         if (active_ <= header_.active) return;
-        fail(where_, "at least " + std::to_string(active_) + " active voxels",
-             std::to_string(header_.active) + ", as \"delta_active\" says");
+        refuseInput(where_, "at least " + std::to_string(active_) + " active voxels",
+                    std::to_string(header_.active) + ", as \"delta_active\" says");
     }
 
     // Tiles are small, but not the nodes that they are in.
@@ -385,7 +385,7 @@ void decode(typename Words::DeltaTree& deltas, const DeltaHeader& header, const 
             const std::string& where, const Listener& listener, typename Words::Tree& values,
             CodeTree::Tree& inactive) {
     if (deltas.background() != 0)
-        fail(where, "background " + std::to_string(deltas.background()), "0");
+        refuseInput(where, "background " + std::to_string(deltas.background()), "0");
     const Decoder<Words> decoder(header, words, where);
     voxelizeTiles(deltas, where);
     const auto leaves = orderedLeaves(deltas, decoder);

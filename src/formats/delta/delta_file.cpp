@@ -31,7 +31,7 @@ namespace {
 
 void checkTolerance(const std::string& option, double tolerance) {
     if (std::isfinite(tolerance) && tolerance >= 0) return;
-    throw Error(ErrorCode::kUsage, gotExpected(option, numberText(tolerance), "a number >= 0"));
+    throw Error(ErrorCode::kUsage, option, numberText(tolerance), "a number >= 0");
 }
 
 // The tolerance has to leave room for what the code book does to values.
@@ -44,10 +44,9 @@ void requireRoom(const Tolerance& tolerance, const Volume& volume) {
             codeError = std::max(codeError, book.largestErrorOf(Code(code)));
     }
     const auto refuse = [&](const char* option, double got, const std::string& expected) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected(option, numberText(got),
-                                expected + ": values are stored with errors up to " +
-                                    numberText(codeError) + " (" + book.name() + " code book)"));
+        throw Error(ErrorCode::kUsage, option, numberText(got),
+                    expected + ": values are stored with errors up to " + numberText(codeError) +
+                        " (" + book.name() + " code book)");
     };
     if (tolerance.value > 0 && tolerance.value < codeError) {
         refuse("`tolerance.value`", tolerance.value,
@@ -147,10 +146,9 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
                       "\": more than 65536 different values of inactive voxels; they become the "
                       "background");
     if (options.maxError && entry.maxError > *options.maxError) {
-        throw Error(ErrorCode::kFailed,
-                    gotExpected("grid \"" + volume.name + "\"",
-                                "a largest error of " + numberText(entry.maxError),
-                                "at most " + numberText(*options.maxError) + " (`maxError`)"));
+        throw Error(ErrorCode::kFailed, "grid \"" + volume.name + "\"",
+                    "a largest error of " + numberText(entry.maxError),
+                    "at most " + numberText(*options.maxError) + " (`maxError`)");
     }
     impl_->grids.push_back(options.pack ? writtenWords(grid) : writtenDeltas(grid));
     listener.report(1);

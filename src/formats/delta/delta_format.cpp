@@ -26,8 +26,7 @@ class Entries {
 
     [[noreturn]] void fail(const std::string& key, const std::string& got,
                            const std::string& expected) const {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(where_ + ": metadata \"" + key + "\"", got, expected));
+        throw Error(ErrorCode::kInput, where_ + ": metadata \"" + key + "\"", got, expected);
     }
 
     template <typename T>

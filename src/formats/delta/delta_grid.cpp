@@ -119,8 +119,8 @@ DeltaGrid gridWithoutSlabs(const Volume& volume, const DeltaOptions& options) {
     grid.keyInterval =
         options.keyInterval != 0 ? options.keyInterval : defaultKeyInterval(grid.box.dims().x);
     if (grid.keyInterval < 8 || grid.keyInterval % 8 != 0) {
-        throw Error(ErrorCode::kUsage, gotExpected("key interval", std::to_string(grid.keyInterval),
-                                                   "a positive multiple of 8"));
+        throw Error(ErrorCode::kUsage, "key interval", std::to_string(grid.keyInterval),
+                    "a positive multiple of 8");
     }
     grid.tree = std::make_shared<DeltaTree>();
     return grid;

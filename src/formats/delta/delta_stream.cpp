@@ -68,9 +68,8 @@ StreamUnpacker::Leaves<Leaf> StreamUnpacker::takePart(const StreamPart& part) co
     PartWalker<typename Leaf::ValueType> walker(words_.data(), header_);
     const auto damaged = [&] {
         const glm::ivec3 place = 8 * glm::ivec3(walker.block(), part.first.y, part.first.z);
-        throw Error(ErrorCode::kInput,
-                    gotExpected(where_, "a damaged stream at " + placeText(place),
-                                "blocks one behind the other"));
+        throw Error(ErrorCode::kInput, where_, "a damaged stream at " + placeText(place),
+                    "blocks one behind the other");
     };
     if (!walker.start(part)) damaged();
     Leaves<Leaf> leaves;

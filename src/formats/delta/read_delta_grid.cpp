@@ -11,6 +11,7 @@
 
 #include "base/memory.h"
 #include "base/progress.h"
+#include "base/refuse.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/slot.h"
@@ -33,11 +34,6 @@
 
 namespace deltasplat {
 namespace {
-
-[[noreturn]] void fail(const std::string& where, const std::string& got,
-                       const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
-}
 
 // The delta grid's axes are the source's in (slice, u, v) order.
 glm::dmat4 sourceTransform(const openvdb::math::MapBase& map, int sliceAxis) {
@@ -84,9 +80,9 @@ Volume describe(const DeltaHeader& header, const VdbMetadata& metadata,
 void requireType(const TreeGrid& grid, const DeltaHeader& header, const std::string& where) {
     const std::string expected = header.isWide() || header.isPacked() ? "int64" : "int32";
     if (grid.type() == expected) return;
-    fail(where, "deltas of type " + grid.type(),
-         expected + " for " +
-             (header.isPacked() ? "packed deltas" : "the code book " + header.bookName()));
+    refuseInput(where, "deltas of type " + grid.type(),
+                expected + " for " +
+                    (header.isPacked() ? "packed deltas" : "the code book " + header.bookName()));
 }
 
 // @param active  box of the active voxels

@@ -83,9 +83,8 @@ TreeGrid restoreGrid(const DeltaHeader& header, const DecodedValues& decoded,
 
 void requireActiveCount(std::uint64_t active, const DeltaHeader& header, const std::string& where) {
     if (active == header.active) return;
-    throw Error(ErrorCode::kInput,
-                gotExpected(where, std::to_string(active) + " active voxels",
-                            std::to_string(header.active) + ", as \"delta_active\" says"));
+    throw Error(ErrorCode::kInput, where, std::to_string(active) + " active voxels",
+                std::to_string(header.active) + ", as \"delta_active\" says");
 }
 
 }  // namespace deltasplat

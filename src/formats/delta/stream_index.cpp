@@ -27,7 +27,7 @@ class IndexReader {
 
   private:
     [[noreturn]] void fail(const std::string& got, const std::string& expected) const {
-        throw Error(ErrorCode::kInput, gotExpected(where_, got, expected));
+        throw Error(ErrorCode::kInput, where_, got, expected);
     }
     // Each part has a word, and bits in the stream, which both may be few in a file.
     [[noreturn]] void failTooMany(std::uint64_t words) const {

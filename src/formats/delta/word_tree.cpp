@@ -96,11 +96,9 @@ std::vector<std::uint64_t> wordsOfTree(const Tree& tree, std::size_t padding,
             // Another program has made a tile of equal words.
             std::fill_n(&words[begin], size, std::uint64_t(accessor.getValue(origin)));
         } else {
-            throw Error(
-                ErrorCode::kInput,
-                gotExpected(where,
-                            "a gap in its words in or behind number " + std::to_string(begin),
-                            std::to_string(count) + ", one behind the other"));
+            throw Error(ErrorCode::kInput, where,
+                        "a gap in its words in or behind number " + std::to_string(begin),
+                        std::to_string(count) + ", one behind the other");
         }
     }
     return words;

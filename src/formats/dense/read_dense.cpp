@@ -67,11 +67,10 @@ RawScan scan(const DenseSource& source, const ReadOptions& options, const Listen
 void settleNonFinite(const DenseSource& source, RawScan& scan, std::optional<double> nanValue) {
     if (scan.nonFinite == 0) return;
     if (!nanValue) {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(source.where,
-                                countText(scan.nonFinite, "NaN or infinite value") +
-                                    ", the first at " + placeText(source.dims, scan.firstNonFinite),
-                                "finite values (`nanValue` VALUE replaces them)"));
+        throw Error(ErrorCode::kInput, source.where,
+                    countText(scan.nonFinite, "NaN or infinite value") + ", the first at " +
+                        placeText(source.dims, scan.firstNonFinite),
+                    "finite values (`nanValue` VALUE replaces them)");
     }
     if (source.type == RawType::kFloat32) {
         requireFloatNan(*nanValue);

@@ -49,9 +49,9 @@ IndexBox boxOf(const Volume& volume) {
 
 void requireVoxels(const std::filesystem::path& file, const Volume& volume, const IndexBox& box) {
     if (!box.empty()) return;
-    throw Error(ErrorCode::kInput,
-                gotExpected(file.string(), "\"" + volume.name + "\", which has no active voxels",
-                            "a volume with a bounding box (.vdb holds empty ones)"));
+    throw Error(ErrorCode::kInput, file.string(),
+                "\"" + volume.name + "\", which has no active voxels",
+                "a volume with a bounding box (.vdb holds empty ones)");
 }
 
 // Returns the file's name, and of a box that is nearly empty what it would take.

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/memory.h"
+#include "base/refuse.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 
@@ -35,11 +36,6 @@ constexpr std::uint32_t kDoseScaling = 0x3004000e;
 using Span = DicomMeaning::Span;
 using Table = DicomMeaning::Table;
 
-[[noreturn]] void refuse(const std::string& where, const std::string& got,
-                         const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
-}
-
 // Numbers of two bytes that stand for stored ones have their sign.
 std::optional<std::int64_t> storedNumber(const DicomItem& item, std::uint32_t tag, bool isSigned) {
     const std::vector<std::uint16_t> words = item.words(tag);
@@ -52,7 +48,7 @@ std::optional<double> decimal(const std::string& where, const DicomItem& item, s
     if (item.text(tag).empty()) return {};
     const std::vector<double> numbers = item.decimals(tag, std::numeric_limits<double>::max());
     if (numbers.size() == 1) return numbers[0];
-    refuse(where, std::string(name) + " " + printable(item.text(tag)), "a number");
+    refuseInput(where, std::string(name) + " " + printable(item.text(tag)), "a number");
 }
 
 // The limit may lie above the value or below. Both are words that stand for the bits of a cell: one
@@ -114,10 +110,10 @@ std::vector<double> tableData(const DicomItem& item, std::size_t entries, int bi
 Table modalityTable(const std::string& where, const DicomItem& item, bool isSigned) {
     const std::vector<std::uint16_t> shape = item.words(kTableShape);
     if (shape.size() != 3) {
-        refuse(where,
-               "a table of values whose LUTDescriptor has " + std::to_string(shape.size()) +
-                   " numbers",
-               "three");
+        refuseInput(where,
+                    "a table of values whose LUTDescriptor has " + std::to_string(shape.size()) +
+                        " numbers",
+                    "three");
     }
     Table table;
     const std::size_t entries = shape[0] == 0 ? 65536 : shape[0];
@@ -125,8 +121,8 @@ Table modalityTable(const std::string& where, const DicomItem& item, bool isSign
     table.first = numberOfBits(shape[1], 16, isSigned);
     table.values = tableData(item, entries, shape[2]);
     if (table.values.size() < entries) {
-        refuse(where, "a table of " + std::to_string(table.values.size()) + " values",
-               std::to_string(entries) + ", as its LUTDescriptor says");
+        refuseInput(where, "a table of " + std::to_string(table.values.size()) + " values",
+                    std::to_string(entries) + ", as its LUTDescriptor says");
     }
     table.values.resize(entries);
     return table;
@@ -154,8 +150,9 @@ Table realTable(const std::string& where, const DicomItem& item, const Span& spa
     Table table{span.first, item.doubles(kRealTable), {}};
     const auto entries = std::uint64_t(span.last - span.first) + 1;
     if (!table.values.empty() && table.values.size() < entries) {
-        refuse(where, "a table of " + std::to_string(table.values.size()) + " real world values",
-               std::to_string(entries));
+        refuseInput(where,
+                    "a table of " + std::to_string(table.values.size()) + " real world values",
+                    std::to_string(entries));
     }
     if (!table.values.empty()) table.values.resize(std::size_t(entries));
     return table;

@@ -7,8 +7,8 @@ namespace deltasplat {
 namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& input, const std::string& got) {
-    throw Error(ErrorCode::kInput,
-                gotExpected(input.string(), got, "a build with DELTASPLAT_DICOM=ON to read DICOM"));
+    throw Error(ErrorCode::kInput, input.string(), got,
+                "a build with DELTASPLAT_DICOM=ON to read DICOM");
 }
 
 }  // namespace

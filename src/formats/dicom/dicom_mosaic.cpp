@@ -10,16 +10,12 @@
 #include <sstream>
 
 #include "deltasplat/error.h"
+#include "files/file_name.h"
 
 namespace deltasplat {
 namespace {
 
 constexpr std::uint32_t kImageType = 0x00080008;
-
-[[noreturn]] void refuse(const DicomSlice& picture, const std::string& got,
-                         const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(picture.file.string(), got, expected));
-}
 
 // A creator of private elements names the block that they stand in.
 std::uint32_t blockOf(const DicomElements& elements, std::uint32_t group,
@@ -117,15 +113,15 @@ std::vector<DicomSlice> slicesOfMosaic(const DicomElements& elements, const Dico
                                        DicomNotes& notes) {
     const Layout layout = layoutOf(elements);
     if (layout.slices < 1) {
-        refuse(picture, "a mosaic (ImageType MOSAIC) that does not say of how many slices",
-               "NumberOfImagesInMosaic of a \"SIEMENS MR HEADER\" or \"SIEMENS CSA HEADER\"");
+        refuseFile(picture.file, "a mosaic (ImageType MOSAIC) that does not say of how many slices",
+                   "NumberOfImagesInMosaic of a \"SIEMENS MR HEADER\" or \"SIEMENS CSA HEADER\"");
     }
     const int side = int(std::ceil(std::sqrt(layout.slices)));
     if (picture.columns % side != 0 || picture.rows % side != 0) {
-        refuse(picture,
-               "a mosaic of " + std::to_string(layout.slices) + " slices in " +
-                   std::to_string(picture.columns) + "x" + std::to_string(picture.rows),
-               "tiles of one size, " + std::to_string(side) + " in a row");
+        refuseFile(picture.file,
+                   "a mosaic of " + std::to_string(layout.slices) + " slices in " +
+                       std::to_string(picture.columns) + "x" + std::to_string(picture.rows),
+                   "tiles of one size, " + std::to_string(side) + " in a row");
     }
     glm::dvec3 step = picture.normal() * picture.thickness;
     if (layout.normal.size() == 3) {

@@ -23,6 +23,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "deltasplat/error.h"
+#include "files/file_name.h"
 #include "formats/raw/raw_load.h"
 #include "volume/value_cast.h"
 
@@ -30,11 +31,6 @@ namespace deltasplat {
 namespace {
 
 constexpr std::uint32_t kUndefined = 0xffffffff;
-
-[[noreturn]] void refuse(const DicomSlice& slice, const std::string& got,
-                         const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(slice.file.string(), got, expected));
-}
 
 std::string littleEndian(std::uint64_t number, int bytes) {
     std::string text;
@@ -62,7 +58,7 @@ void readBytes(const DicomSlice& slice, const DicomPixels::Piece& piece, char* t
     std::ifstream in(slice.file, std::ios::binary);
     in.seekg(std::streamoff(piece.start));
     if (!in.read(to, std::streamsize(piece.length))) {
-        refuse(slice, "a read error", "a readable file");
+        refuseFile(slice.file, "a read error", "a readable file");
     }
 }
 
@@ -103,18 +99,18 @@ std::optional<DicomStream> checkedStream(const DicomSlice& slice, const std::str
     if (pixels.syntax == kRunLengths) return {};
     const std::optional<DicomStream> stream = readStreamHeader(bytes);
     if (!stream) {
-        refuse(slice, "packed pixels that do not begin as a JPEG picture does",
-               "the pixels that the header names");
+        refuseFile(slice.file, "packed pixels that do not begin as a JPEG picture does",
+                   "the pixels that the header names");
     }
     if (stream->columns != std::uint64_t(pixels.columns) ||
         stream->rows != std::uint64_t(pixels.rows) || stream->components != 1 || stream->bits < 1 ||
         stream->bits > 32) {
-        refuse(slice,
-               "a packed picture of " + sizeText(stream->columns, stream->rows) + " pixels of " +
-                   std::to_string(stream->components) + " numbers of " +
-                   std::to_string(stream->bits) + " bits",
-               sizeText(std::uint64_t(pixels.columns), std::uint64_t(pixels.rows)) +
-                   " of one number, as the header says");
+        refuseFile(slice.file,
+                   "a packed picture of " + sizeText(stream->columns, stream->rows) +
+                       " pixels of " + std::to_string(stream->components) + " numbers of " +
+                       std::to_string(stream->bits) + " bits",
+                   sizeText(std::uint64_t(pixels.columns), std::uint64_t(pixels.rows)) +
+                       " of one number, as the header says");
     }
     return stream;
 }
@@ -203,8 +199,8 @@ DicomCells unpackedCells(const DicomSlice& slice) {
         },
         cells.bytes.data());
     if (!done) {
-        refuse(slice, "pixels that GDCM cannot unpack, or not all of them",
-               "the pixels that the header names");
+        refuseFile(slice.file, "pixels that GDCM cannot unpack, or not all of them",
+                   "the pixels that the header names");
     }
     return cells;
 }

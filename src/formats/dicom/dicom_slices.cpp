@@ -5,16 +5,12 @@
 #include <cmath>
 #include <tuple>
 
+#include "base/refuse.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 
 namespace deltasplat {
 namespace {
-
-[[noreturn]] void refuse(const std::string& where, const std::string& got,
-                         const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
-}
 
 std::string sizeText(const DicomSlice& slice) {
     return std::to_string(slice.columns) + "x" + std::to_string(slice.rows);
@@ -23,16 +19,16 @@ std::string sizeText(const DicomSlice& slice) {
 void requireAlike(const std::filesystem::path& input, const DicomSlice& first,
                   const DicomSlice& other) {
     if (first.columns != other.columns || first.rows != other.rows) {
-        refuse(other.file.string(), "a slice of " + sizeText(other),
-               sizeText(first) + ", as in " + first.name(input));
+        refuseInput(other.file.string(), "a slice of " + sizeText(other),
+                    sizeText(first) + ", as in " + first.name(input));
     }
     // A thousandth of a voxel over a thousand voxels is one voxel.
     const double most =
         1e-3 * std::min(glm::length(first.alongRow), glm::length(first.alongColumn));
     if (glm::distance(first.alongRow, other.alongRow) > most ||
         glm::distance(first.alongColumn, other.alongColumn) > most) {
-        refuse(other.file.string(), "a slice of another direction or pixel spacing",
-               "one parallel to " + first.name(input));
+        refuseInput(other.file.string(), "a slice of another direction or pixel spacing",
+                    "one parallel to " + first.name(input));
     }
 }
 
@@ -43,7 +39,7 @@ void requireEven(const std::filesystem::path& input, const std::vector<DicomSlic
     for (std::size_t i = 1; i < slices.size(); ++i) {
         gaps.push_back(glm::dot(slices[i].position - slices[i - 1].position, normal));
         if (gaps.back() < 1e-4 * slices.front().thickness) {
-            refuse(
+            refuseInput(
                 input.string(),
                 slices[i - 1].name(input) + " and " + slices[i].name(input) + " at the same place",
                 "one slice at each place");
@@ -54,10 +50,10 @@ void requireEven(const std::filesystem::path& input, const std::vector<DicomSlic
     const double usual = sorted[(sorted.size() - 1) / 2];
     for (std::size_t i = 0; i < gaps.size(); ++i) {
         if (std::abs(gaps[i] - usual) <= 0.25 * usual) continue;
-        refuse(input.string(),
-               slices[i].name(input) + " and " + slices[i + 1].name(input) + " " +
-                   numberText(gaps[i]) + " mm apart",
-               numberText(usual) + " mm as between the others (a slice may be missing)");
+        refuseInput(input.string(),
+                    slices[i].name(input) + " and " + slices[i + 1].name(input) + " " +
+                        numberText(gaps[i]) + " mm apart",
+                    numberText(usual) + " mm as between the others (a slice may be missing)");
     }
 }
 
@@ -70,9 +66,9 @@ void requireStraight(const std::filesystem::path& input, const std::vector<Dicom
         const glm::dvec3 off = slices[i].position - (first.position + double(i) * step);
         const double aside = glm::length(off - normal * glm::dot(off, normal));
         if (aside <= most) continue;
-        refuse(input.string(),
-               slices[i].name(input) + " " + numberText(aside) + " mm aside of the others",
-               "slices in one row");
+        refuseInput(input.string(),
+                    slices[i].name(input) + " " + numberText(aside) + " mm aside of the others",
+                    "slices in one row");
     }
 }
 

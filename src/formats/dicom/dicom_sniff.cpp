@@ -145,15 +145,13 @@ DicomSeries chooseSeries(const std::filesystem::path& input, std::vector<DicomSe
         const auto chosen = std::find_if(series.begin(), series.end(),
                                          [&](const DicomSeries& one) { return one.uid == *uid; });
         if (chosen != series.end()) return std::move(*chosen);
-        throw Error(ErrorCode::kInput,
-                    gotExpected(input.string(), "no DICOM series " + nameOf(*uid),
-                                "`series` of " + listText(series)));
+        throw Error(ErrorCode::kInput, input.string(), "no DICOM series " + nameOf(*uid),
+                    "`series` of " + listText(series));
     }
     if (series.size() == 1) return std::move(series.front());
-    throw Error(ErrorCode::kInput,
-                gotExpected(input.string(),
-                            std::to_string(series.size()) + " DICOM series: " + listText(series),
-                            "one, chosen by `series` UID"));
+    throw Error(ErrorCode::kInput, input.string(),
+                std::to_string(series.size()) + " DICOM series: " + listText(series),
+                "one, chosen by `series` UID");
 }
 
 }  // namespace deltasplat

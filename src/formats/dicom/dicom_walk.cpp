@@ -96,7 +96,7 @@ class Walk {
     };
 
     [[noreturn]] void refuse(const std::string& got, const std::string& expected) const {
-        throw Error(ErrorCode::kInput, gotExpected(where_, got, expected));
+        throw Error(ErrorCode::kInput, where_, got, expected);
     }
     [[noreturn]] void refusePlace(const std::string& what) const {
         refuse("DICOM whose " + what + " at byte " + std::to_string(place_), "a sound file");

@@ -23,10 +23,9 @@ namespace {
 void requireEnough(const std::string& where, const FileBytes& file, double ratio, double width,
                    double height, double pixelBytes) {
     if (isEnough(double(file.size()), ratio, width * height * pixelBytes)) return;
-    throw Error(ErrorCode::kInput,
-                gotExpected(where, std::to_string(file.size()) + " bytes",
-                            "enough for " + std::to_string(std::int64_t(width)) + "x" +
-                                std::to_string(std::int64_t(height)) + " pixels"));
+    throw Error(ErrorCode::kInput, where, std::to_string(file.size()) + " bytes",
+                "enough for " + std::to_string(std::int64_t(width)) + "x" +
+                    std::to_string(std::int64_t(height)) + " pixels");
 }
 
 // Takes numbers and texts from a file, one behind the other; zeros once it has ended.

@@ -118,9 +118,9 @@ void requireEvenNumbers(const std::filesystem::path& input, const StackPattern& 
     std::uint64_t wanted = files.begin()->first;
     for (const auto& [number, file] : files) {
         if (number != wanted) {
-            throw Error(ErrorCode::kInput,
-                        gotExpected(input.string(), "no file " + printable(pattern.nameOf(wanted)),
-                                    std::to_string(files.size()) + " or more numbers in a row"));
+            throw Error(ErrorCode::kInput, input.string(),
+                        "no file " + printable(pattern.nameOf(wanted)),
+                        std::to_string(files.size()) + " or more numbers in a row");
         }
         wanted += step;
     }
@@ -138,8 +138,8 @@ std::vector<std::filesystem::path> stackFiles(const std::filesystem::path& input
         if (const auto number = pattern.numberOf(name)) found[*number] = pattern.folder / name;
     }
     if (found.empty()) {
-        throw Error(ErrorCode::kInput, gotExpected(input.string(), "no file of that name",
-                                                   "files such as " + pattern.nameOf(1)));
+        throw Error(ErrorCode::kInput, input.string(), "no file of that name",
+                    "files such as " + pattern.nameOf(1));
     }
     requireEvenNumbers(input, pattern, found);
     std::vector<std::filesystem::path> files;
@@ -189,10 +189,10 @@ void requireEvenNames(const std::filesystem::path& folder, const std::vector<std
         if (std::from_chars(digits.data(), last, number).ec != std::errc{}) return;
         pattern.digits = std::min(pattern.digits, digits.size());
         if (found.emplace(number, name).second) continue;
-        throw Error(ErrorCode::kInput, gotExpected(folder.string(),
-                                                   printable(found[number].string()) + " and " +
-                                                       printable(name) + ", the same number twice",
-                                                   "each number once"));
+        throw Error(ErrorCode::kInput, folder.string(),
+                    printable(found[number].string()) + " and " + printable(name) +
+                        ", the same number twice",
+                    "each number once");
     }
     requireEvenNumbers(folder, pattern, found);
 }

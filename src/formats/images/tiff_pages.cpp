@@ -76,7 +76,7 @@ class Walk {
 
   private:
     [[noreturn]] void refuse(const std::string& got, const std::string& expected) const {
-        throw Error(ErrorCode::kInput, gotExpected(where_, got, expected));
+        throw Error(ErrorCode::kInput, where_, got, expected);
     }
     [[noreturn]] void refuse(const std::string& got) const { refuse(got, "a whole TIFF"); }
     std::string page() const { return "page " + std::to_string(pages_.pages.size() + 1); }

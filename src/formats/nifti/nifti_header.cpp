@@ -101,10 +101,9 @@ glm::dmat4 asFloats(const glm::dmat4& matrix) {
 void settleNifti(DenseLayout& layout, const std::string& file, Notes& notes) {
     const int most = std::max({layout.dims.x, layout.dims.y, layout.dims.z});
     if (most > kMostVoxels) {
-        throw Error(ErrorCode::kFailed,
-                    gotExpected(file, dimsText(layout.dims) + " voxels",
-                                "at most " + std::to_string(kMostVoxels) +
-                                    " along each axis in NIfTI (.nrrd has no such limit)"));
+        throw Error(ErrorCode::kFailed, file, dimsText(layout.dims) + " voxels",
+                    "at most " + std::to_string(kMostVoxels) +
+                        " along each axis in NIfTI (.nrrd has no such limit)");
     }
     if (layout.space.empty()) {
         notes.remark("no patient space is known; NIfTI takes world space for RAS");
@@ -114,9 +113,8 @@ void settleNifti(DenseLayout& layout, const std::string& file, Notes& notes) {
     layout.noteLabels("NIfTI", false, notes);
     const glm::dmat4 written = asFloats(layout.worldFromIndex);
     if (!givesPlaces(written)) {
-        throw Error(ErrorCode::kFailed,
-                    gotExpected(file, "spacing, directions or origin out of range",
-                                "ones that 32-bit floats hold, as NIfTI has them"));
+        throw Error(ErrorCode::kFailed, file, "spacing, directions or origin out of range",
+                    "ones that 32-bit floats hold, as NIfTI has them");
     }
     if (written != layout.worldFromIndex) {
         notes.loss("spacing, directions or origin rounded to 32-bit floats, as NIfTI has them");

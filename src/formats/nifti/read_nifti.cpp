@@ -114,7 +114,7 @@ class Fields {
         return second ? at<std::int32_t>(place) : at<std::int16_t>(place);
     }
     [[noreturn]] void refuse(const std::string& got, const std::string& expected) const {
-        throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
+        throw Error(ErrorCode::kInput, where, got, expected);
     }
 };
 

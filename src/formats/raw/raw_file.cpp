@@ -28,8 +28,7 @@ std::string expectedSize(const RawFile& file) {
 
 [[noreturn]] void throwSize(const RawFile& file, const std::string& got) {
     const std::string least = file.mayGoOn ? "at least " : "";
-    throw Error(ErrorCode::kInput,
-                gotExpected(file.path.string(), got, least + expectedSize(file)));
+    throw Error(ErrorCode::kInput, file.path.string(), got, least + expectedSize(file));
 }
 
 [[noreturn]] void throwSize(const RawFile& file, std::uint64_t bytes) {

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "base/refuse.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "files/file_name.h"
@@ -44,11 +45,6 @@ struct NameParts {
     std::string type;
     std::optional<bool> bigEndian;
 };
-
-[[noreturn]] void refuse(const std::string& where, const std::string& got,
-                         const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected(where, got, expected));
-}
 
 const TypeInfo* findType(const std::string& name) {
     for (std::size_t i = 0; i < kRawNames; ++i) {
@@ -117,8 +113,8 @@ glm::i64vec3 dimsFromName(const std::string& file, const NameParts& parts) {
         const auto result =
             std::from_chars(digits.data(), digits.data() + digits.size(), dims[axis]);
         if (result.ec != std::errc{}) {
-            refuse(file, "dims " + parts.dims[0] + "x" + parts.dims[1] + "x" + parts.dims[2],
-                   "each 1.." + std::to_string(kMaxDim));
+            refuseUsage(file, "dims " + parts.dims[0] + "x" + parts.dims[1] + "x" + parts.dims[2],
+                        "each 1.." + std::to_string(kMaxDim));
         }
     }
     return dims;
@@ -127,15 +123,15 @@ glm::i64vec3 dimsFromName(const std::string& file, const NameParts& parts) {
 glm::i64vec3 resolveDims(const std::filesystem::path& file, const RawFormat& format,
                          const NameParts& parts) {
     if (!format.dims && parts.dims[0].empty()) {
-        refuse(file.string(), "no dimensions",
-               "`dims` XxYxZ and `type` TYPE, or a name such as volume_256x256x128_uint8.raw");
+        refuseUsage(file.string(), "no dimensions",
+                    "`dims` XxYxZ and `type` TYPE, or a name such as volume_256x256x128_uint8.raw");
     }
     const std::string where = format.dims ? "`dims`" : file.string();
     const glm::i64vec3 dims = format.dims ? *format.dims : dimsFromName(where, parts);
     for (int axis = 0; axis < 3; ++axis) {
         if (dims[axis] < 1 || dims[axis] > kMaxDim) {
-            refuse(where, (format.dims ? "" : "dims ") + dimsText(dims),
-                   "each 1.." + std::to_string(kMaxDim));
+            refuseUsage(where, (format.dims ? "" : "dims ") + dimsText(dims),
+                        "each 1.." + std::to_string(kMaxDim));
         }
     }
     return dims;
@@ -144,13 +140,13 @@ glm::i64vec3 resolveDims(const std::filesystem::path& file, const RawFormat& for
 const TypeInfo& resolveType(const std::filesystem::path& file, const RawFormat& format,
                             const NameParts& parts) {
     if (!format.type && parts.type.empty()) {
-        refuse(file.string(), "no value type",
-               "`type` TYPE, or a name such as volume_256x256x128_uint8.raw");
+        refuseUsage(file.string(), "no value type",
+                    "`type` TYPE, or a name such as volume_256x256x128_uint8.raw");
     }
     const std::string& name = format.type ? *format.type : parts.type;
     const TypeInfo* info = findType(name);
-    if (info == nullptr && format.type) refuse("`type`", name, kKnownTypes);
-    if (info == nullptr) refuse(file.string(), "value type " + name, kKnownTypes);
+    if (info == nullptr && format.type) refuseUsage("`type`", name, kKnownTypes);
+    if (info == nullptr) refuseUsage(file.string(), "value type " + name, kKnownTypes);
     return *info;
 }
 
@@ -160,12 +156,12 @@ void checkSize(const std::string& where, const RawLayout& layout) {
     const std::int64_t slice = layout.dims.x * layout.dims.y;
     const std::int64_t bytes = rawTypeBytes(layout.type);
     if (layout.dims.z > limit / slice / bytes) {
-        refuse(where, dimsText(layout.dims) + " " + rawTypeName(layout.type),
-               "at most 9223372036854775807 bytes");
+        refuseUsage(where, dimsText(layout.dims) + " " + rawTypeName(layout.type),
+                    "at most 9223372036854775807 bytes");
     }
     if (layout.skipBytes > std::uint64_t(limit) - layout.dataBytes()) {
-        refuse("`skipBytes`", std::to_string(layout.skipBytes),
-               "less than 9223372036854775807 bytes together with the voxels");
+        refuseUsage("`skipBytes`", std::to_string(layout.skipBytes),
+                    "less than 9223372036854775807 bytes together with the voxels");
     }
 }
 
@@ -190,11 +186,11 @@ void requireGeometry(const RawFormat& format) {
     for (int axis = 0; axis < 3; ++axis) {
         const double spacing = format.spacing.value_or(glm::dvec3(1))[axis];
         if (spacing >= 1 / kMostLength && spacing <= kMostLength) continue;
-        refuse("`spacing`", numberText(spacing),
-               "three numbers from " + numberText(1 / kMostLength) + " to " + most);
+        refuseUsage("`spacing`", numberText(spacing),
+                    "three numbers from " + numberText(1 / kMostLength) + " to " + most);
     }
     if (glm::length(format.origin) <= kMostLength) return;
-    refuse("`origin`", numberText(format.origin), "a place within " + most + " of 0,0,0");
+    refuseUsage("`origin`", numberText(format.origin), "a place within " + most + " of 0,0,0");
 }
 
 RawLayout resolveRawLayout(const std::filesystem::path& file, const RawFormat& format) {
@@ -221,8 +217,8 @@ bool saysLayout(const std::filesystem::path& file, const RawLayout& layout) {
         return dimsText(one.dims) + " " + rawTypeName(one.type) + (ordered ? "be" : "");
     };
     if (text(said) == text(layout)) return true;
-    refuse(file.string(), "a name that says " + text(said),
-           text(layout) + ", or a name that says nothing");
+    refuseUsage(file.string(), "a name that says " + text(said),
+                text(layout) + ", or a name that says nothing");
 }
 
 }  // namespace deltasplat

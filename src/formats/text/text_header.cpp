@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "base/memory.h"
+#include "base/refuse.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "files/file_bytes.h"
@@ -21,11 +22,6 @@ namespace {
 
 constexpr std::size_t kMostLine = std::size_t{1} << 20;
 constexpr std::size_t kMostHeader = std::size_t{1} << 24;
-
-[[noreturn]] void refuse(const std::string& where, const std::string& got,
-                         const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
-}
 
 std::string trimmed(const std::string& text) {
     const char* const kBlanks = " \t";
@@ -55,7 +51,7 @@ class Lines {
         std::string line;
         for (std::optional<char> c; (c = get());) {
             if (place_ > kMostHeader || line.size() > kMostLine) {
-                refuse(where_, "a header without end", "a text header");
+                refuseInput(where_, "a header without end", "a text header");
             }
             if (c == '\n') {
                 if (line.ends_with('\r')) line.pop_back();
@@ -95,20 +91,21 @@ std::string quoted(const std::string& line) {
 
 [[noreturn]] void refuseLine(const Lines& lines, const std::string& line,
                              const std::string& expected) {
-    refuse(lines.where(), quoted(line), expected);
+    refuseInput(lines.where(), quoted(line), expected);
 }
 
 // In fields that mean something here. What some take for the end of a line, and others do not, is
 // in none of them.
 void requireText(const Lines& lines, const std::string& line) {
     if (std::ranges::none_of(line, controls)) return;
-    refuse(lines.where(), "control characters in " + quoted(line), "lines of text");
+    refuseInput(lines.where(), "control characters in " + quoted(line), "lines of text");
 }
 
 // Of a field given twice readers take one or the other.
 void addField(const Lines& lines, const TextHeader::Field& field, TextHeader& header) {
     if (header.find(field.name) != nullptr) {
-        refuse(lines.where(), "the field " + printable(field.name) + " twice", "each field once");
+        refuseInput(lines.where(), "the field " + printable(field.name) + " twice",
+                    "each field once");
     }
     header.fields.push_back(field);
 }
@@ -272,7 +269,8 @@ TextHeader readNrrdHeader(const std::filesystem::path& file) {
     std::optional<std::string> line = lines.next();
     if (!line || line->size() != 8 || !line->starts_with("NRRD000") || (*line)[7] < '1' ||
         (*line)[7] > '5') {
-        refuse(lines.where(), "no NRRD header", "a file that begins with NRRD0001 to NRRD0005");
+        refuseInput(lines.where(), "no NRRD header",
+                    "a file that begins with NRRD0001 to NRRD0005");
     }
     while ((line = lines.next()) && !line->empty()) {
         if ((*line)[0] != '#') addNrrdLine(lines, *line, header);
@@ -292,7 +290,7 @@ TextHeader readMetaHeader(const std::filesystem::path& file) {
             return header;
         }
     }
-    refuse(lines.where(), "no ElementDataFile", "a MetaImage header that ends with one");
+    refuseInput(lines.where(), "no ElementDataFile", "a MetaImage header that ends with one");
 }
 
 std::vector<std::int64_t> parseSizes(const std::string& where, const std::string& text) {
@@ -304,12 +302,12 @@ std::vector<std::int64_t> parseSizes(const std::string& where, const std::string
         const char* const end = word.data() + word.size();
         const auto result = std::from_chars(word.data(), end, size);
         if (result.ec != std::errc{} || result.ptr != end || size < 1 || size > kMost) {
-            refuse(where, "sizes " + printable(text),
-                   "whole numbers from 1 to " + std::to_string(kMost));
+            refuseInput(where, "sizes " + printable(text),
+                        "whole numbers from 1 to " + std::to_string(kMost));
         }
         sizes.push_back(size);
     }
-    if (sizes.empty()) refuse(where, "no sizes", "the number of voxels along each axis");
+    if (sizes.empty()) refuseInput(where, "no sizes", "the number of voxels along each axis");
     return sizes;
 }
 

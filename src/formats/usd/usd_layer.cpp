@@ -58,8 +58,7 @@ class UsdParser {
 
   private:
     [[noreturn]] void failAt(int line, const std::string& got, const std::string& expected) const {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(file_.string() + ":" + std::to_string(line), got, expected));
+        throw Error(ErrorCode::kInput, file_.string() + ":" + std::to_string(line), got, expected);
     }
 
     [[noreturn]] void fail(const std::string& got, const std::string& expected) const {

@@ -25,8 +25,7 @@ constexpr std::size_t kMostNamed = 8;
 
 [[noreturn]] void fail(const UsdLayer& layer, int line, const std::string& got,
                        const std::string& expected) {
-    throw Error(ErrorCode::kInput,
-                gotExpected(layer.file.string() + ":" + std::to_string(line), got, expected));
+    throw Error(ErrorCode::kInput, layer.file.string() + ":" + std::to_string(line), got, expected);
 }
 
 bool isInactive(const UsdPrim& prim) {
@@ -226,11 +225,10 @@ UsdChain choosePrim(const UsdLayer& layer, std::string_view type, const std::str
     const std::string got = !meant.empty() ? std::to_string(meant.size()) + " prims of type " + kind
                             : path.empty() ? "no prim of type " + kind
                                            : "no prim of type " + kind + " at " + path;
-    throw Error(ErrorCode::kInput,
-                gotExpected(layer.file.string(), got,
-                            all.empty()    ? "at least one"
-                            : path.empty() ? "the path of one behind a colon: " + names
-                                           : "one of " + names));
+    throw Error(ErrorCode::kInput, layer.file.string(), got,
+                all.empty()    ? "at least one"
+                : path.empty() ? "the path of one behind a colon: " + names
+                               : "one of " + names);
 }
 
 UsdValue valueAt(const UsdProperty& property, double time, bool mixes) {

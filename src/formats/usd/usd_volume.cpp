@@ -76,8 +76,8 @@ class UsdVolumeReader {
 
   private:
     [[noreturn]] void fail(int line, const std::string& got, const std::string& expected) const {
-        throw Error(ErrorCode::kInput,
-                    gotExpected(layer_.file.string() + ":" + std::to_string(line), got, expected));
+        throw Error(ErrorCode::kInput, layer_.file.string() + ":" + std::to_string(line), got,
+                    expected);
     }
 
     // A volume is where it stands itself, wherever its fields are.

@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "base/memory.h"
+#include "base/refuse.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "formats/readers.h"
@@ -30,11 +31,6 @@
 
 namespace deltasplat {
 namespace {
-
-[[noreturn]] void fail(const std::string& where, const std::string& got,
-                       const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
-}
 
 // Replaces what is not finite, or refuses it.
 template <typename Tree>
@@ -309,8 +305,8 @@ IndexBox boxOfVoxels(const openvdb::CoordBBox& active, const std::string& where)
         voxels *= double(box.max[axis]) - box.min[axis] + 1;
     }
     if (!fits) {
-        fail(where, "active voxels spread over " + numberText(voxels) + " places",
-             "indices within 2^30 of 0");
+        refuseInput(where, "active voxels spread over " + numberText(voxels) + " places",
+                    "indices within 2^30 of 0");
     }
     return box;
 }
@@ -337,7 +333,7 @@ bool fillFromLeaves(const VdbValues& values, const GridCodesOptions& options, Vo
 void fillFromGrid(TreeGrid& grid, const GridCodesOptions& options, Volume& volume) {
     const bool known = grid.apply<ScalarTrees>(
         [&](const auto& tree) { fill<std::decay_t<decltype(tree)>>(options, grid, volume); });
-    if (!known) fail(options.where, "type " + options.type, "a scalar grid");
+    if (!known) refuseInput(options.where, "type " + options.type, "a scalar grid");
 }
 
 }  // namespace deltasplat

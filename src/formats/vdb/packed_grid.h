@@ -33,8 +33,8 @@ struct PackedGrid {
 struct NeedsWholeGrid : Error {
     /// @param where  for messages
     explicit NeedsWholeGrid(const std::string& where)
-        : Error(ErrorCode::kInput, gotExpected(where, "a grid that is read leaf by leaf",
-                                               "one that is read as a whole")) {}
+        : Error(ErrorCode::kInput, where, "a grid that is read leaf by leaf",
+                "one that is read as a whole") {}
 };
 
 /// Reads a grid of a .vdb whose values stay packed: a volume without codes, whose `source` has

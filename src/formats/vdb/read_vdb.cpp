@@ -8,6 +8,7 @@
 
 #include "base/default_floats.h"
 #include "base/progress.h"
+#include "base/refuse.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "formats/delta/delta_format.h"
@@ -45,11 +46,6 @@ struct ChosenGrid {
 // Reading and unpacking the file is by far the longer part of the work on a grid.
 constexpr double kReadShare = 0.8;
 
-[[noreturn]] void fail(const std::string& where, const std::string& got,
-                       const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(where, got, expected));
-}
-
 std::string listOf(const std::vector<VdbGrid>& grids) {
     std::vector<std::string> names;
     for (const VdbGrid& grid : grids) names.push_back(grid.describe());
@@ -58,9 +54,10 @@ std::string listOf(const std::vector<VdbGrid>& grids) {
 
 void requireScalar(const std::string& file, const VdbGrid& grid, const std::string& name) {
     if (grid.isScalar()) return;
-    fail(file, "grid \"" + name + "\" of type " + grid.type,
-         isVector(grid) ? kScalarGrid + std::string(", or a part of it such as ") + name + ".x"
-                        : kScalarGrid);
+    refuseInput(file, "grid \"" + name + "\" of type " + grid.type,
+                isVector(grid)
+                    ? kScalarGrid + std::string(", or a part of it such as ") + name + ".x"
+                    : kScalarGrid);
 }
 
 const VdbGrid* findByName(const std::vector<VdbGrid>& grids, const std::string& name) {
@@ -88,9 +85,9 @@ ChosenGrid findGrid(const std::string& file, const std::vector<VdbGrid>& grids,
     if (found == nullptr) {
         std::vector<std::string> names;
         for (const VdbGrid& grid : grids) names.push_back(grid.name);
-        fail(file, "no grid \"" + name + "\"",
-             grids.empty() ? "a file with grids"
-                           : "one of " + listOf(grids) + afterStop(suggestion(name, names)));
+        refuseInput(file, "no grid \"" + name + "\"",
+                    grids.empty() ? "a file with grids"
+                                  : "one of " + listOf(grids) + afterStop(suggestion(name, names)));
     }
     requireScalar(file, *found, name);
     return {found};
@@ -107,7 +104,7 @@ std::vector<ChosenGrid> chooseGrids(const std::string& where, const VdbFile& fil
     if (all && !chosen.empty()) return chosen;
     const VdbGrid* const preferred = defaultGrid(file);
     if (!preferred || (chosen.empty() && grids.size() > 1))
-        fail(where, grids.empty() ? "no grids" : "only " + listOf(grids), kScalarGrid);
+        refuseInput(where, grids.empty() ? "no grids" : "only " + listOf(grids), kScalarGrid);
     requireScalar(where, *preferred, preferred->name);
     return {{preferred}};
 }

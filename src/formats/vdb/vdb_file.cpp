@@ -113,7 +113,7 @@ openvdb::math::MapBase::ConstPtr takeMap(std::istream& stream, const std::string
     } catch (const std::exception& error) {
         got = printable(error.what());
     }
-    throw Error(ErrorCode::kInput, gotExpected(where, got, "a sound OpenVDB grid"));
+    throw Error(ErrorCode::kInput, where, got, "a sound OpenVDB grid");
 }
 
 // Returns the type of the transform that comes next, and leaves `bytes` before it.
@@ -355,11 +355,11 @@ void VdbFile::findOwners() {
 const VdbGrid& VdbFile::ownerOf(const VdbGrid& grid) const {
     if (grid.parentName.empty()) return grid;
     if (grid.owner) return grids_[*grid.owner];
-    throw Error(ErrorCode::kInput, gotExpected(file_.string(),
-                                               "grid \"" + grid.name +
-                                                   "\" without "
-                                                   "the grid whose voxels it shares",
-                                               "a sound .vdb file"));
+    throw Error(ErrorCode::kInput, file_.string(),
+                "grid \"" + grid.name +
+                    "\" without "
+                    "the grid whose voxels it shares",
+                "a sound .vdb file");
 }
 
 // A grid, none of whose values but the background has been read.

@@ -43,8 +43,7 @@ void requireValue(const std::string& type, double value) {
     if (type == "int64") holds = holds && value >= -0x1p63 && value < 0x1p63;
     if (type == "bool" || type == "mask") holds = value == 0 || value == 1;
     if (holds) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("`background`", numberText(value), "a value of type " + type));
+    throw Error(ErrorCode::kUsage, "`background`", numberText(value), "a value of type " + type);
 }
 
 // Returns the value to drop, or says that there is none.

@@ -32,8 +32,8 @@ WrittenGrid writtenGrid(const TreeGrid& grid) {
     const bool isKnown =
         grid.apply<ScalarTrees>(take) || grid.apply<TreeTypes<openvdb::Vec3STree>>(take);
     if (!isKnown)
-        throw Error(ErrorCode::kFailed, gotExpected("grid to write", "type " + grid.type(),
-                                                    "a scalar grid, or one of vec3s"));
+        throw Error(ErrorCode::kFailed, "grid to write", "type " + grid.type(),
+                    "a scalar grid, or one of vec3s");
     return written;
 }
 

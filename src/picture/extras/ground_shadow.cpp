@@ -158,7 +158,7 @@ double alphaAt(const Image& image, const Camera& camera, const glm::dvec3& world
 namespace {
 
 [[noreturn]] void refuse(const std::string& got, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected("`ground`", got, expected));
+    throw Error(ErrorCode::kUsage, "`ground`", got, expected);
 }
 
 void check(const Ground& ground, const RenderOptions& options) {
@@ -448,9 +448,8 @@ std::vector<ImageChannel> shadowChannels(const Image& shadow) {
 void putShadowBehind(Image& image, const Image& shadow) {
     const DefaultFloats floats;
     if (image.size != shadow.size) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("shadow", dimsText(shadow.size) + " pixels",
-                                dimsText(image.size) + ", those of the picture"));
+        throw Error(ErrorCode::kUsage, "shadow", dimsText(shadow.size) + " pixels",
+                    dimsText(image.size) + ", those of the picture");
     }
     for (std::size_t i = 3; i < image.rgba.size(); i += 4)
         image.rgba[i] += (1 - image.rgba[i]) * shadow.rgba[i];

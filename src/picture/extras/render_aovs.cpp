@@ -35,7 +35,7 @@ bool severalAbsorb(const Optics& optics) {
 }
 
 [[noreturn]] void refuse(Aov aov, const std::string& got, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected("`aovs` " + aovName(aov), got, expected));
+    throw Error(ErrorCode::kUsage, "`aovs` " + aovName(aov), got, expected);
 }
 
 void check(Aov aov, const Optics& optics) {
@@ -50,8 +50,8 @@ void check(Aov aov, const Optics& optics) {
 
 void checkOpacity(double opacity) {
     if (opacity >= kLeastDepthOpacity && opacity <= 1) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("`depthOpacity`", numberText(opacity), "a number within 0.001..1"));
+    throw Error(ErrorCode::kUsage, "`depthOpacity`", numberText(opacity),
+                "a number within 0.001..1");
 }
 
 // What is seen alone of what optics show; all hide as much as they did.
@@ -424,9 +424,8 @@ std::vector<ImageChannel> renderAovs(const Volume& volume, const RenderOptions& 
         if (isWanted(aov)) check(aov, options.optics);
     checkOpacity(aovOptions.depthOpacity);
     if (aovOptions.picture && aovOptions.picture->size != camera.sizePixels) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("`picture`", dimsText(aovOptions.picture->size) + " pixels",
-                                dimsText(camera.sizePixels) + ", those of the camera"));
+        throw Error(ErrorCode::kUsage, "`picture`", dimsText(aovOptions.picture->size) + " pixels",
+                    dimsText(camera.sizePixels) + ", those of the camera");
     }
     // A picture, and what is made of it, for each; and places.
     const double bytesPerPixel = (16 + 4 * 6) * double(aovs.size()) + sizeof(Place);

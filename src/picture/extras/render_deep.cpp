@@ -153,9 +153,8 @@ constexpr double kBytesPerPixel = 32;
 
 void checkSlices(int slices) {
     if (slices >= 1 && slices <= kMostSlicesPerSample) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("`slicesPerSample`", std::to_string(slices),
-                            "a whole number within 1.." + std::to_string(kMostSlicesPerSample)));
+    throw Error(ErrorCode::kUsage, "`slicesPerSample`", std::to_string(slices),
+                "a whole number within 1.." + std::to_string(kMostSlicesPerSample));
 }
 
 std::string shortText(double number) {
@@ -182,10 +181,9 @@ void requireBefore(const Camera& camera, const Volume& volume) {
     // Six digits of what is enough are enough.
     constexpr double kRounding = 1e-5;
     if (nearest >= -kRounding * std::abs(camera.targetDistanceWorld)) return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("`distanceWorld`", numberText(camera.targetDistanceWorld),
-                            "at least " + shortText(camera.targetDistanceWorld - nearest) +
-                                " for a deep picture, all of whose depths are beyond the camera"));
+    throw Error(ErrorCode::kUsage, "`distanceWorld`", numberText(camera.targetDistanceWorld),
+                "at least " + shortText(camera.targetDistanceWorld - nearest) +
+                    " for a deep picture, all of whose depths are beyond the camera");
 }
 
 RenderStats renderSamples(const PreparedScene::Impl& scene, const Camera& camera,
@@ -211,8 +209,8 @@ RenderResult renderDeep(const Volume& volume, const RenderOptions& options,
     const DefaultFloats floats;
     checkSlices(deepOptions.slicesPerSample);
     if (options.mode != Mode::kComposite) {
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("`mode`", modeName(options.mode), "composite for a deep picture"));
+        throw Error(ErrorCode::kUsage, "`mode`", modeName(options.mode),
+                    "composite for a deep picture");
     }
     RenderResult result;
     const auto makePicture = [&](const Volume& seen) {

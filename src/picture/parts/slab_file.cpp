@@ -193,7 +193,7 @@ SlabFileReader::SlabFileReader(const std::filesystem::path& file)
 }
 
 void SlabFileReader::refuse(const std::string& got, const std::string& expected) const {
-    throw Error(ErrorCode::kInput, gotExpected(file_->path().string(), got, expected));
+    throw Error(ErrorCode::kInput, file_->path().string(), got, expected);
 }
 
 void SlabFileReader::readBytes(void* to, std::size_t bytes) {

@@ -37,14 +37,13 @@ OpenPart openPart(const std::filesystem::path& path) {
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& got,
                          const std::string& expected) {
-    throw Error(ErrorCode::kInput, gotExpected(file.string(), got, expected));
+    throw Error(ErrorCode::kInput, file.string(), got, expected);
 }
 
 // @return parts in the order of their shares
 std::vector<OpenPart> openAll(std::span<const std::filesystem::path> paths) {
     if (paths.empty())
-        throw Error(ErrorCode::kUsage,
-                    gotExpected("parts of a picture", "none", "all of a picture"));
+        throw Error(ErrorCode::kUsage, "parts of a picture", "none", "all of a picture");
     std::vector<OpenPart> parts;
     for (const std::filesystem::path& path : paths) {
         parts.push_back(openPart(path));

@@ -150,8 +150,8 @@ void check(const SlabShare& share) {
     if (share.first >= 1 && share.first <= share.last && share.last <= share.count &&
         share.count <= kMostSlabShares)
         return;
-    throw Error(ErrorCode::kUsage,
-                gotExpected("`share`", shareText(share), "some of at most 10000, counted from 1"));
+    throw Error(ErrorCode::kUsage, "`share`", shareText(share),
+                "some of at most 10000, counted from 1");
 }
 
 }  // namespace

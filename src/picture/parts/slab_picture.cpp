@@ -16,7 +16,7 @@ namespace deltasplat {
 namespace {
 
 [[noreturn]] void refuse(const std::string& got, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, gotExpected("layers of a picture", got, expected));
+    throw Error(ErrorCode::kUsage, "layers of a picture", got, expected);
 }
 
 std::string boxText(const glm::ivec2& min, const glm::ivec2& max) {
@@ -95,10 +95,8 @@ SlabPicture::Impl::Impl(const PreparedScene& ofScene, const Camera& ofCamera,
     const PreparedScene::Impl& prepared = scene.impl();
     // Looks of more slices have numbers that are others in each process.
     if (prepared.options.mostJoined > 2) {
-        throw Error(
-            ErrorCode::kUsage,
-            gotExpected("`mostJoined`", std::to_string(prepared.options.mostJoined) + " for slabs",
-                        "1 or 2"));
+        throw Error(ErrorCode::kUsage, "`mostJoined`",
+                    std::to_string(prepared.options.mostJoined) + " for slabs", "1 or 2");
     }
     SlabSink sink(*this);
     renderViews(prepared, camera, memory, sink, listener);

@@ -17,7 +17,7 @@ namespace {
 
 void requirePositive(const char* option, double number) {
     if (std::isfinite(number) && number > 0) return;
-    throw Error(ErrorCode::kUsage, gotExpected(option, numberText(number), "a finite number > 0"));
+    throw Error(ErrorCode::kUsage, option, numberText(number), "a finite number > 0");
 }
 
 // Rays reckon in 32-bit floats: says where these are not enough.
@@ -73,8 +73,8 @@ void checkRayOptions(const RenderOptions& options) {
     requirePositive("`drr.muWater`", options.drr.muWater);
     if (options.drr.photons) requirePositive("`drr.photons`", *options.drr.photons);
     if (!(options.depthShade >= 0 && options.depthShade <= 1)) {
-        throw Error(ErrorCode::kUsage, gotExpected("`depthShade`", numberText(options.depthShade),
-                                                   "a number from 0 to 1"));
+        throw Error(ErrorCode::kUsage, "`depthShade`", numberText(options.depthShade),
+                    "a number from 0 to 1");
     }
 }
 
