@@ -81,7 +81,7 @@ void requireSpace(const std::filesystem::path& file, const std::string& what,
                                         humanBytes(double(space.available)) + ", which is free");
 }
 
-void noteLostStates(const Volume& volume, const IndexBox& box, Notes& notes) {
+void noteLostStates(const Volume& volume, const IndexBox& box, WriteNotes& notes) {
     if (!volume.hasBackground) return;
     const std::uint64_t inactive = voxelsOf(box) - volume.activeCount;
     if (inactive != 0) {
@@ -99,7 +99,7 @@ void noteLostStates(const Volume& volume, const IndexBox& box, Notes& notes) {
 }
 
 DenseLayout layoutOf(const Volume& volume, const IndexBox& box, const ValueFacts& facts,
-                     const DenseFormat& format, Notes& notes) {
+                     const DenseFormat& format, WriteNotes& notes) {
     DenseLayout layout;
     layout.dims = box.dims();
     layout.type = denseType(volume, facts, format.wideIntegers, notes);
@@ -193,7 +193,7 @@ WriteReport writeDense(const std::filesystem::path& file, const DenseFormat& for
     const IndexBox box = boxOf(volume);
     requireVoxels(file, volume, box);
     WriteReport report;
-    Notes notes(report, file);
+    WriteNotes notes(report, file);
     const ValueFacts facts = factsOf(volume);
     DenseLayout layout = layoutOf(volume, box, facts, format, notes);
     format.settle(layout, file.string(), notes);

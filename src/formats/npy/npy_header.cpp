@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: numpy.lib.format, "NPY format" (numpy.org/doc), version 1.0.
-#include "formats/dense/dense_layout.h"
+#include "formats/npy/read_npy.h"
 
 namespace deltasplat {
 namespace {

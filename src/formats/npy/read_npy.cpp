@@ -20,6 +20,7 @@
 #include "files/file_bytes.h"
 #include "files/file_name.h"
 #include "formats/choose_volume.h"
+#include "formats/format.h"
 #include "formats/raw/raw_file.h"
 #include "formats/raw/raw_load.h"
 
@@ -233,7 +234,10 @@ DenseSource fromHalves(DenseSource source) {
 
 }  // namespace
 
-DenseSource openNpy(const std::filesystem::path& path, const ReadOptions& options) {
+namespace {
+
+DenseSource openNpy(const std::filesystem::path& path, const InputKind&, const ReadOptions& options,
+                    const Listener&) {
     const RawFormat& format = options.raw;
     const NpyHeader header = readNpyHeader(path);
     requireGeometry(format);
@@ -246,6 +250,17 @@ DenseSource openNpy(const std::filesystem::path& path, const ReadOptions& option
     source.worldFromIndex = glm::scale(glm::translate(glm::dmat4(1), format.origin),
                                        format.spacing.value_or(glm::dvec3(1)));
     return header.half ? fromHalves(std::move(source)) : source;
+}
+
+}  // namespace
+
+const Format& npyFormat() {
+    static const Format format{.extensions = {".npy"},
+                               .saysPlace = false,
+                               .mayHoldSeveral = true,
+                               .open = openNpy,
+                               .written = {{".npy", "", false, false, true, settleNpy, npyHeader}}};
+    return format;
 }
 
 }  // namespace deltasplat

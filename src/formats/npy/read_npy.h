@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "formats/dense/dense_layout.h"
 #include "formats/dense/dense_source.h"
 #include "formats/raw/raw_format.h"
 
@@ -21,9 +22,8 @@ struct NpyHeader {
 /// @throw Error(kInput) if it is none, or says what cannot be meant or is not supported
 NpyHeader readNpyHeader(const std::filesystem::path& file);
 
-/// Opens a .npy file.
-/// @param options  spacing, origin and which volume are taken from it
-/// @throw as readVolume
-DenseSource openNpy(const std::filesystem::path& file, const ReadOptions& options);
+/// As DenseFormat has them.
+void settleNpy(DenseLayout& layout, const std::string& file, WriteNotes& notes);
+std::string npyHeader(const DenseLayout& layout, const std::string& dataFile);
 
 }  // namespace deltasplat
