@@ -55,9 +55,4 @@ void settleRaw(DenseLayout& layout, const std::string& file, WriteNotes& notes) 
     layout.noteLabels("a file without a header", true, notes);
 }
 
-void settleNpy(DenseLayout& layout, const std::string&, WriteNotes& notes) {
-    notePlace(layout, "no place in its header", "", notes);
-    layout.noteLabels("NumPy's format", true, notes);
-}
-
 }  // namespace deltasplat
