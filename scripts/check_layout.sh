@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Checks what needs no build: the layout of C++, shell and Python scripts for errors, and that the
-# drawing of rooms is that of the includes.
+# Checks what needs no build: the layout of C++, shell and Python scripts for errors, that the
+# drawing of rooms is that of the includes, and that budgets are kept.
 # Usage: bash scripts/check_layout.sh
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -16,3 +16,4 @@ import sys
 for name in sys.argv[1:]:
     compile(open(name, encoding="utf-8").read(), name, "exec")'
 python3 scripts/draw_rooms.py --check
+bash scripts/check_budgets.sh

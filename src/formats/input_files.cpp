@@ -6,44 +6,14 @@
 
 #include "base/text.h"
 #include "deltasplat/error.h"
+#include "formats/format.h"
 #include "formats/input_kind.h"
-#include "formats/nifti/read_nifti.h"
-#include "formats/text/text_header.h"
 
 namespace deltasplat {
-namespace {
-
-// The name that a header gives of its data file; empty if the data follows the header.
-std::string dataNameIn(const std::filesystem::path& header, InputKind::Format format) {
-    if (format == InputKind::Format::kNrrd) {
-        const TextHeader text = readNrrdHeader(header);
-        const std::string* const name = text.find("datafile");
-        return name == nullptr ? "" : *name;
-    }
-    const std::string name = readMetaHeader(header).fields.back().value;
-    return lowerCase(name) == "local" ? "" : name;
-}
-
-// The two files of a NIfTI pair, that which was named first.
-std::vector<std::filesystem::path> withPartner(const std::filesystem::path& input) {
-    std::vector<std::filesystem::path> files{input};
-    for (const std::filesystem::path& file : niftiFiles(input))
-        if (file != input) files.push_back(file);
-    return files;
-}
-
-}  // namespace
-
 std::vector<std::filesystem::path> filesOf(const std::filesystem::path& input) {
     try {
-        InputKind kind = findInput(input, {});
-        if (kind.format == InputKind::Format::kNifti) return withPartner(input);
-        if (kind.format == InputKind::Format::kNrrd ||
-            kind.format == InputKind::Format::kMetaImage) {
-            const std::string name = dataNameIn(input, kind.format);
-            if (!name.empty()) kind.files.push_back(input.parent_path() / name);
-        }
-        return kind.files;
+        const InputKind kind = findInput(input, {});
+        return kind.format->files ? kind.format->files(input) : kind.files;
     } catch (const Error&) {
         return {input};
     }

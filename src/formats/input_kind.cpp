@@ -2,7 +2,6 @@
 #include "formats/input_kind.h"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <set>
 #include <system_error>
@@ -11,40 +10,13 @@
 #include "deltasplat/error.h"
 #include "files/file_name.h"
 #include "formats/dicom/dicom_sniff.h"
+#include "formats/format.h"
 #include "formats/images/image_stack.h"
 
 namespace deltasplat {
 namespace {
 
-using Format = InputKind::Format;
 using Files = std::vector<std::filesystem::path>;
-
-// By extension, which may have ".gz" behind it but for DICOM and images.
-const std::map<std::string, Format>& formats() {
-    static const std::map<std::string, Format> kFormats{
-        {".vdb", Format::kVdb},       {".raw", Format::kRaw},     {".npy", Format::kNpy},
-        {".nii", Format::kNifti},     {".hdr", Format::kNifti},   {".img", Format::kNifti},
-        {".nrrd", Format::kNrrd},     {".nhdr", Format::kNrrd},   {".mhd", Format::kMetaImage},
-        {".mha", Format::kMetaImage}, {".dcm", Format::kDicom},   {".bmp", Format::kImages},
-        {".exr", Format::kImages},    {".jpeg", Format::kImages}, {".jpg", Format::kImages},
-        {".pgm", Format::kImages},    {".png", Format::kImages},  {".tif", Format::kImages},
-        {".tiff", Format::kImages}};
-    return kFormats;
-}
-
-std::optional<Format> formatOf(const std::filesystem::path& file) {
-    std::string extension = lowerExtension(file);
-    const bool gzip = extension.ends_with(".gz");
-    if (gzip) extension.resize(extension.size() - 3);
-    const auto found = formats().find(extension);
-    if (found == formats().end()) return {};
-    const bool plainOnly = found->second == Format::kDicom || found->second == Format::kImages;
-    return gzip && plainOnly ? std::nullopt : std::optional(found->second);
-}
-
-constexpr const char* kReadable =
-    ".vdb, .raw, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .hdr, .img (all of these also with .gz), "
-    ".dcm, .tif, .png, .jpg, .bmp, .pgm or .exr";
 
 // Regular files that are not hidden, in the order of their names. What is neither that nor a folder
 // may be a slice that is not there: nobody knows.
@@ -211,7 +183,7 @@ std::optional<InputKind> findSlices(const std::filesystem::path& folder, const F
     const bool isStack = areNamedAsStack(images) && images.size() > study.dicom.size();
     if (isStack && !hasOwn && !isDisc) return {};
     warnOfOthers(folder, study.all, study.dicom, "DICOM", listener);
-    return InputKind{Format::kDicom, folderName(folder), study.dicom};
+    return InputKind{&dicomFormat(), folderName(folder), study.dicom};
 }
 
 InputKind findInFolder(const std::filesystem::path& folder, const Listener& listener) {
@@ -221,7 +193,7 @@ InputKind findInFolder(const std::filesystem::path& folder, const Listener& list
     if (images.empty()) {
         const Files grids = filesThat(all, [](const auto& file) { return isVdbName(file); });
         const Files others =
-            filesThat(all, [](const auto& file) { return formatOf(file).has_value(); });
+            filesThat(all, [](const auto& file) { return formatOf(file) != nullptr; });
         std::string such;
         if (!grids.empty()) {
             such = " such as " + grids.front().string() + " (render takes '" +
@@ -241,7 +213,7 @@ InputKind findInFolder(const std::filesystem::path& folder, const Listener& list
     }
     requireNoHole(folder, images);
     warnOfOthers(folder, all, images, "images", listener);
-    return {Format::kImages, folderName(folder), images};
+    return {&imageFormat(), folderName(folder), images};
 }
 
 std::string nameOfPattern(const StackPattern& pattern) {
@@ -252,7 +224,7 @@ std::string nameOfPattern(const StackPattern& pattern) {
 }  // namespace
 
 bool isImageName(const std::filesystem::path& file) {
-    return formatOf(file) == Format::kImages;
+    return formatOf(file) == &imageFormat();
 }
 
 bool isTiffName(const std::filesystem::path& file) {
@@ -265,23 +237,23 @@ InputKind findInput(const std::filesystem::path& input, const Listener& listener
     if (std::filesystem::is_directory(input, error)) return findInFolder(input, listener);
     const std::optional<StackPattern> pattern = stackPattern(input);
     if (pattern && isImageName(input) && !std::filesystem::exists(input, error)) {
-        return {Format::kImages, nameOfPattern(*pattern), stackFiles(input, *pattern)};
+        return {&imageFormat(), nameOfPattern(*pattern), stackFiles(input, *pattern)};
     }
     requireRegularFile(input);
     // A disc's table of contents stands for the disc.
     if (isNamedAsContents(input) && dicomStart(input))
         return findInFolder(input.has_parent_path() ? input.parent_path() : ".", listener);
     const std::string extension = lowerExtension(input);
-    const std::optional<Format> format = formatOf(input);
+    const Format* const format = formatOf(input);
     if ((!format || extension == ".img") && dicomStart(input))
-        return {Format::kDicom, nameOfSlice(input), {input}};
+        return {&dicomFormat(), nameOfSlice(input), {input}};
     if (!format) {
         refuseFile(input, "extension \"" + extension + "\"",
-                   kReadable + std::string(extension == ".usda"    ? " (render reads .usda)"
-                                           : extension == ".slabs" ? " (fold reads .slabs)"
-                                                                   : ""));
+                   readableText() + (extension == ".usda"    ? " (render reads .usda)"
+                                     : extension == ".slabs" ? " (fold reads .slabs)"
+                                                             : ""));
     }
-    return {*format, nameWithoutExtensions(input), {input}};
+    return {format, nameWithoutExtensions(input), {input}};
 }
 
 }  // namespace deltasplat

@@ -9,14 +9,17 @@
 
 namespace deltasplat {
 
+struct Format;
+
 /// What an input's name leads to.
 struct InputKind {
-    enum class Format { kVdb, kRaw, kNpy, kNifti, kNrrd, kMetaImage, kDicom, kImages };
-    Format format = Format::kVdb;
-    std::string name;  ///< without folder, extensions and counter
+    const Format* format = nullptr;  ///< a line of the table of formats (format.h)
+    std::string name;                ///< without folder, extensions and counter
     /// The input itself, the slices of a DICOM folder in no order, or the images of a stack in the
     /// order of their numbers.
     std::vector<std::filesystem::path> files;
+
+    bool is(const Format& one) const { return format == &one; }
 };
 
 /// Whether a file's extension is that of images, of which a stack is a volume.

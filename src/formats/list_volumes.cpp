@@ -8,6 +8,7 @@
 #include "formats/delta/delta_format.h"
 #include "formats/dense/dense_source.h"
 #include "formats/dicom/dicom_sniff.h"
+#include "formats/format.h"
 #include "formats/input_files.h"
 #include "formats/input_kind.h"
 #include "formats/vdb/default_grid.h"
@@ -103,12 +104,12 @@ std::vector<VolumeEntry> listVolumes(const std::filesystem::path& file, const Re
                                      const Listener& listener) {
     const InputKind kind = findInput(file, listener);
     if (inputsAreConfined()) requireConfined(file);
-    if (kind.format == InputKind::Format::kVdb) return listVdb(file);
-    if (kind.format == InputKind::Format::kDicom) return listDicom(file, kind, options);
+    if (kind.is(vdbFormat())) return listVdb(file);
+    if (kind.is(dicomFormat())) return listDicom(file, kind, options);
     ReadOptions any = options;
     if (!any.volume) any.volume = 0;
     VolumeEntry entry;
-    describe(openDense(file, kind, any, listener), entry);
+    describe(kind.format->open(file, kind, any, listener), entry);
     entry.preferred = entry.volumes == 1;
     return {entry};
 }

@@ -12,36 +12,14 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "formats/dense/dense_source.h"
-#include "formats/dicom/dicom_sniff.h"
+#include "formats/format.h"
 #include "formats/input_files.h"
 #include "formats/input_kind.h"
 #include "formats/nifti/read_nifti.h"
-#include "formats/npy/read_npy.h"
 #include "formats/read_compared.h"
 #include "formats/readers.h"
 
 namespace deltasplat {
-
-DenseSource openDense(const std::filesystem::path& input, const InputKind& kind,
-                      const ReadOptions& options, const Listener& listener) {
-    switch (kind.format) {
-        case InputKind::Format::kNifti:
-            return openNifti(input, options, listener);
-        case InputKind::Format::kNpy:
-            return openNpy(input, options);
-        case InputKind::Format::kNrrd:
-            return openNrrd(input, options, listener);
-        case InputKind::Format::kMetaImage:
-            return openMetaImage(input, options, listener);
-        case InputKind::Format::kDicom:
-            return openDicom(input, kind.name,
-                             chooseSeries(input, findSeries(input, kind.files), options.series));
-        case InputKind::Format::kImages:
-            return openImages(input, kind.name, kind.files, options, listener);
-        default:
-            return openRaw(input, options.raw);
-    }
-}
 
 namespace {
 
@@ -52,10 +30,11 @@ void read(const std::filesystem::path& file, const ReadOptions& options, bool al
     requireFiniteNan(options);
     const InputKind kind = findInput(file, listener);
     if (inputsAreConfined()) requireConfined(file);
-    if (kind.format == InputKind::Format::kVdb) {
+    if (kind.is(vdbFormat())) {
         readVdb(file, options, all, visitor, listener);
     } else {
-        Volume volume = readValues(openDense(file, kind, options, listener), options, listener);
+        Volume volume =
+            readValues(kind.format->open(file, kind, options, listener), options, listener);
         if (visitor.volume) visitor.volume(std::move(volume));
     }
     listener.report(1);
@@ -84,8 +63,7 @@ Volume readCompared(const std::filesystem::path& file, const ReadOptions& option
 }
 
 int placeDigitsOf(const std::filesystem::path& file) {
-    if (findInput(file, {}).format != InputKind::Format::kNifti)
-        return std::numeric_limits<double>::digits;
+    if (!findInput(file, {}).is(niftiFormat())) return std::numeric_limits<double>::digits;
     return readNiftiHeader(file, {}).placeDigits;
 }
 

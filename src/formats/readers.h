@@ -11,26 +11,10 @@
 
 namespace deltasplat {
 
-// Each of these looks at the headers only. All throw as readVolume.
-
-/// Opens a .raw or .raw.gz file.
-DenseSource openRaw(const std::filesystem::path& file, const RawFormat& format);
-
-/// Opens a .nii file, or a .hdr and .img pair.
-DenseSource openNifti(const std::filesystem::path& file, const ReadOptions& options,
-                      const Listener& listener);
-
-/// Opens a .nrrd or .nhdr file.
-DenseSource openNrrd(const std::filesystem::path& file, const ReadOptions& options,
-                     const Listener& listener);
-
-/// Opens a .mhd or .mha file.
-DenseSource openMetaImage(const std::filesystem::path& file, const ReadOptions& options,
-                          const Listener& listener);
-
-/// Opens a stack of images, or the pages of one.
+/// Opens a stack of images, or the pages of one, by headers.
 /// @param input   for messages
 /// @param files   in order
+/// @throw as readVolume
 DenseSource openImages(const std::filesystem::path& input, const std::string& name,
                        const std::vector<std::filesystem::path>& files, const ReadOptions& options,
                        const Listener& listener);

@@ -10,6 +10,7 @@
 #include "files/file_name.h"
 #include "formats/dense/dense_layout.h"
 #include "formats/dense/write_dense.h"
+#include "formats/format.h"
 #include "formats/vdb/write_grids.h"
 
 namespace deltasplat {
@@ -19,11 +20,11 @@ bool isVdb(const std::filesystem::path& file) {
     return lowerExtension(file) == ".vdb";
 }
 
-const DenseFormat& formatOf(const std::filesystem::path& file) {
+const DenseFormat& writtenFormat(const std::filesystem::path& file) {
     const std::string extension = lowerExtension(file);
     if (const DenseFormat* format = findDenseFormat(extension)) return *format;
     throw Error(ErrorCode::kUsage, file.string(), "extension \"" + extension + "\"",
-                ".vdb, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .raw or .raw.gz");
+                writableText());
 }
 
 // Headers are lines of text, and MetaImage takes "%" for the place of a slice's number.
@@ -43,7 +44,7 @@ std::filesystem::path dataFileOf(const std::filesystem::path& file) {
 }
 
 void checkVolumeFile(const std::filesystem::path& file) {
-    if (!isVdb(file)) formatOf(file);
+    if (!isVdb(file)) writtenFormat(file);
     const AtomicFile probe(file);
     const std::filesystem::path dataFile = dataFileOf(file);
     if (dataFile.empty()) return;
@@ -55,7 +56,7 @@ WriteReport writeVolumes(const std::filesystem::path& file, std::vector<Volume> 
                          const WriteOptions& options, const Listener& listener) {
     const DefaultFloats floats;
     if (isVdb(file)) return writeGrids(file, std::move(volumes), options, listener);
-    const DenseFormat& format = formatOf(file);
+    const DenseFormat& format = writtenFormat(file);
     if (volumes.size() != 1) {
         throw Error(ErrorCode::kUsage, file.string(), std::to_string(volumes.size()) + " volumes",
                     "one, except in a .vdb");

@@ -4,22 +4,91 @@
 #include <OpenEXR/ImfDeepFrameBuffer.h>
 #include <OpenEXR/ImfDeepScanLineOutputFile.h>
 #include <OpenEXR/ImfPartType.h>
-
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "base/parallel.h"
+#include "deltasplat/image/deep_image.h"
 #include "image/encode_exr.h"
 #include "image/exr_header.h"
 #include "image/exr_stream.h"
+#include "image/quantize.h"
 #include "image/seen_box.h"
-#include "image/stored_samples.h"
 
 namespace deltasplat {
+namespace {
+
+/// Adds the samples of a pixel to others as they are stored: with NaN as 0, the rest clamped to
+/// finite numbers, and without those that are nothing then. Halves are rounded so that samples over
+/// each other stay the pixel: each makes up for what was rounded before it. What is not 1 is no 1
+/// where anything lies behind.
+/// @param samples  from the front to the back
+/// @param asFloat  colour and alpha as floats instead of halves
+void addStored(std::span<const DeepSample> samples, bool asFloat, std::vector<DeepSample>& stored);
+
+namespace {
+
+constexpr float kBelowOne = 1 - 0x1p-11f;  // the next half
+
+glm::vec4 finite(const glm::vec4& color, float largest) {
+    glm::vec4 result;
+    for (int c = 0; c < 4; ++c) result[c] = finiteValue(color[c], largest);
+    return result;
+}
+
+// Rounds to 11 significant bits, or to 2^-24.
+float roundedToHalf(double value) {
+    if (value == 0) return 0;
+    const double step = std::ldexp(1.0, std::max(std::ilogb(value), -14) - 10);
+    return float(std::clamp(std::nearbyint(value / step) * step, -double(kLargestHalf),
+                            double(kLargestHalf)));
+}
+
+// Of one sign with what is meant, or nothing; what is nothing stays so.
+double ofSameSign(double value, float meant) {
+    return meant > 0 ? std::max(value, 0.0) : meant < 0 ? std::min(value, 0.0) : 0.0;
+}
+
+class HalfRounder {
+  public:
+    glm::vec4 rounded(const glm::vec4& color, bool isLast) {
+        whole_ += (1 - whole_.a) * glm::dvec4(color);
+        const double left = 1 - shown_.a;
+        glm::dvec4 wanted(color);
+        if (left > 0) wanted = (whole_ - shown_) / left;
+        glm::vec4 result;
+        for (int c = 0; c < 4; ++c) result[c] = roundedToHalf(ofSameSign(wanted[c], color[c]));
+        if (color.a < 1 && !isLast) result.a = std::min(result.a, kBelowOne);
+        shown_ += left * glm::dvec4(result);
+        return result;
+    }
+
+  private:
+    glm::dvec4 whole_{0.0};
+    glm::dvec4 shown_{0.0};
+};
+
+}  // namespace
+
+void addStored(std::span<const DeepSample> samples, bool asFloat, std::vector<DeepSample>& stored) {
+    const float largest = asFloat ? std::numeric_limits<float>::max() : kLargestHalf;
+    HalfRounder halves;
+    for (const DeepSample& sample : samples) {
+        glm::vec4 color = finite(sample.rgba, largest);
+        if (!asFloat) color = halves.rounded(color, &sample == &samples.back());
+        if (color != glm::vec4(0)) stored.push_back({color, sample.z, sample.zBack});
+    }
+}
+
+}  // namespace
+
 namespace {
 
 constexpr std::array<const char*, 6> kChannels{"R", "G", "B", "A", "Z", "ZBack"};

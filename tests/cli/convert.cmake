@@ -50,7 +50,7 @@ deltasplat_cli_test(convert.no_output EXIT 2 ARGS convert ${cube}
 foreach(file out.txt out out.gz)
     string(REGEX MATCH "[.].*$" extension ${file})
     deltasplat_cli_test(convert.format.${file} EXIT 2 ARGS convert nowhere.vdb ${file}
-        STDERR "deltasplat: ${file}: got extension \"${extension}\"; expected .vdb, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .raw or .raw.gz")
+        STDERR "deltasplat: ${file}: got extension \"${extension}\"; expected .vdb, .raw, .raw.gz, .npy, .nrrd, .nhdr, .mhd, .mha, .nii or .nii.gz")
 endforeach()
 deltasplat_cli_test(convert.background EXIT 2 ARGS convert ${cube} out.vdb --background air
     STDERR "deltasplat: --background: got air; expected a finite number, auto or none")

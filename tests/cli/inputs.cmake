@@ -14,7 +14,7 @@ deltasplat_bad_input(folder
     "folder.exr: got a folder without DICOM files and images; expected a DICOM folder, a folder of images, or a file"
     folder.exr)
 deltasplat_bad_input(format
-    "tf_good.json: got extension \".json\"; expected .vdb, .raw, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .hdr, .img (all of these also with .gz), .dcm, .tif, .png, .jpg, .bmp, .pgm or .exr" tf_good.json)
+    "tf_good.json: got extension \".json\"; expected .vdb, .raw, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .hdr, .img (all of these also with .gz), .dcm, .tif, .tiff, .png, .jpg, .jpeg, .bmp, .pgm or .exr" tf_good.json)
 
 deltasplat_bad_input(cut_raw
     "cut_8x8x8_uint8.raw: got 500 bytes; expected 512 (8x8x8 uint8)" cut_8x8x8_uint8.raw)

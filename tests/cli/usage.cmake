@@ -57,7 +57,7 @@ deltasplat_cli_test(usage.help_of ARGS help render STDOUT_MATCHES "Renders one p
 deltasplat_cli_test(usage.help_alone ARGS help STDOUT_MATCHES "'deltasplat help SUBCOMMAND' explains a subcommand")
 
 # Inputs that other subcommands read.
-set(readable ".vdb, .raw, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .hdr, .img (all of these also with .gz), .dcm, .tif, .png, .jpg, .bmp, .pgm or .exr")
+set(readable ".vdb, .raw, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .hdr, .img (all of these also with .gz), .dcm, .tif, .tiff, .png, .jpg, .jpeg, .bmp, .pgm or .exr")
 deltasplat_cli_test(usage.info_of_usda EXIT 3 ARGS info scene.usda
     STDERR "deltasplat: scene.usda: got extension \".usda\"; expected ${readable} (render reads .usda)")
 

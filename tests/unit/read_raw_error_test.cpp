@@ -54,7 +54,7 @@ TEST(ReadRawError, UnknownExtension) {
     writeBytes("a", "");
     const std::string readable =
         "; expected .vdb, .raw, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, .hdr, .img (all of these "
-        "also with .gz), .dcm, .tif, .png, .jpg, .bmp, .pgm or .exr";
+        "also with .gz), .dcm, .tif, .tiff, .png, .jpg, .jpeg, .bmp, .pgm or .exr";
     expectInput("a.xyz: got extension \".xyz\"" + readable, "a.xyz");
     expectInput("a.tar.gz: got extension \".tar.gz\"" + readable, "a.tar.gz");
     expectInput("a: got extension \"\"" + readable, "a");

@@ -458,8 +458,8 @@ TEST(WriteDense, WhatCannotBeWritten) {
                 [&] { write("out.nii", lengthy); });
     expectError(
         ErrorCode::kUsage,
-        "out.txt: got extension \".txt\"; expected .vdb, .npy, .nrrd, .nhdr, .mhd, .mha, .nii, "
-        ".nii.gz, .raw or .raw.gz",
+        "out.txt: got extension \".txt\"; expected .vdb, .raw, .raw.gz, .npy, .nrrd, .nhdr, "
+        ".mhd, .mha, .nii or .nii.gz",
         [&] { write("out.txt", lengthy); });
     expectError(ErrorCode::kUsage, "out.nrrd: got 2 volumes; expected one, except in a .vdb", [&] {
         writeVolumes("out.nrrd", {lengthy, lengthy});

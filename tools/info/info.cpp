@@ -8,6 +8,7 @@
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "drawing/plot_file.h"
+#include "formats/format.h"
 #include "formats/input_kind.h"
 #include "info/describe_volume.h"
 #include "info/info_list.h"
@@ -128,7 +129,7 @@ void addFile(const std::string& file, const InfoOptions& options, const Describe
         }
         ++done;
     }
-    if (!report.grids.empty() && findInput(file, {}).format == InputKind::Format::kVdb)
+    if (!report.grids.empty() && findInput(file, {}).is(vdbFormat()))
         report.medium = mediumGrids(listVolumes(file, options.read));
     if (!report.grids.empty() || !report.others.empty()) found.reports.push_back(std::move(report));
 }

@@ -9,6 +9,7 @@
 
 #include "base/text.h"
 #include "deltasplat/error.h"
+#include "formats/format.h"
 #include "formats/input_kind.h"
 #include "formats/raw/raw_format.h"
 #include "options/command_line.h"
@@ -152,9 +153,7 @@ std::map<int, double> parseOpacities(const std::string& option, const std::strin
 
 // What neither names a place in the world nor directions.
 bool saysNoPlace(const std::filesystem::path& input) {
-    using Format = InputKind::Format;
-    const Format format = findInput(input, {}).format;
-    return format == Format::kRaw || format == Format::kNpy || format == Format::kImages;
+    return !findInput(input, {}).format->saysPlace;
 }
 
 FileAndName fileAndGrid(const std::filesystem::path& mask) {
@@ -250,8 +249,7 @@ void addLabelOptions(CLI::App& app, LabelChanges& changes) {
 std::vector<std::filesystem::path> filesOfMask(const CutChoice& choice) {
     if (choice.mask.empty()) return {};
     const FileAndName named = fileAndGrid(choice.mask);
-    if (named.name.empty() || findInput(named.file, {}).format == InputKind::Format::kVdb)
-        return {named.file};
+    if (named.name.empty() || findInput(named.file, {}).is(vdbFormat())) return {named.file};
     throw Error(ErrorCode::kUsage, "--mask", choice.mask.string(),
                 "a .vdb before the colon, or no colon");
 }

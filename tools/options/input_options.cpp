@@ -4,6 +4,7 @@
 #include <set>
 
 #include "deltasplat/error.h"
+#include "formats/format.h"
 #include "formats/input_files.h"
 #include "formats/input_kind.h"
 
@@ -115,7 +116,7 @@ void requireChoice(const CLI::App& app, const std::string& option, bool meant,
 
 void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesystem::path>& inputs,
                               const Listener& listener) {
-    std::set<InputKind::Format> formats;
+    std::set<const Format*> formats;
     bool anyTiff = false;
     for (const std::filesystem::path& input : inputs) {
         // What is wrong with an input is for its reader to say.
@@ -127,28 +128,29 @@ void warnOfUnusedInputOptions(const CLI::App& app, const std::vector<std::filesy
             return;
         }
     }
-    const bool anyRaw = formats.contains(InputKind::Format::kRaw);
-    const bool anyNpy = formats.contains(InputKind::Format::kNpy);
-    const bool anyImages = formats.contains(InputKind::Format::kImages);
-    const bool mayBeSeveral = anyNpy || anyTiff || formats.contains(InputKind::Format::kNifti) ||
-                              formats.contains(InputKind::Format::kNrrd) ||
-                              formats.contains(InputKind::Format::kMetaImage);
-    requireChoice(app, "--volume", mayBeSeveral, "a .nii, .nrrd, .mha, .npy or .tif");
-    requireChoice(app, "--series", formats.contains(InputKind::Format::kDicom), "a DICOM");
+    const auto isAny = [&](bool Format::*flag) {
+        return std::any_of(formats.begin(), formats.end(),
+                           [&](const Format* format) { return format->*flag; });
+    };
+    const bool isAllPlaced = std::all_of(formats.begin(), formats.end(),
+                                         [](const Format* format) { return format->saysPlace; });
+    requireChoice(app, "--volume", anyTiff || isAny(&Format::mayHoldSeveral),
+                  "a .nii, .nrrd, .mha, .npy or .tif");
+    requireChoice(app, "--series", formats.contains(&dicomFormat()), "a DICOM");
     const auto warnOf = [&](const std::vector<std::string>& options, const std::string& input) {
         const std::string remark = ": has no effect without " + input;
         for (const std::string& option : options) {
             if (isGiven(app, option)) listener.warn(option + remark);
         }
     };
-    if (!formats.contains(InputKind::Format::kVdb)) {
+    if (!formats.contains(&vdbFormat())) {
         warnOf({"--grid", "--level-set"}, "a .vdb input");
     }
-    if (!anyRaw) {
+    if (!formats.contains(&rawVolumeFormat())) {
         warnOf({"--dims", "--type", "--endian", "--skip-bytes"}, "a .raw or .raw.gz input");
     }
-    if (!anyImages) warnOf({"--palette"}, "an input of images");
-    if (!anyRaw && !anyNpy && !anyImages) {
+    if (!formats.contains(&imageFormat())) warnOf({"--palette"}, "an input of images");
+    if (isAllPlaced) {
         warnOf({"--spacing", "--origin"}, "an input of raw values or images");
     }
 }

@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "deltasplat/error.h"
+#include "formats/format.h"
 #include "formats/input_kind.h"
 
 namespace deltasplat {
@@ -11,8 +12,7 @@ namespace {
 bool mayHoldSeveral(const std::filesystem::path& input) {
     const InputKind kind = findInput(input, {});
     const bool isTiff = kind.files.size() == 1 && isTiffName(kind.files.front());
-    return isTiff || kind.format == InputKind::Format::kNifti ||
-           kind.format == InputKind::Format::kNpy || kind.format == InputKind::Format::kDicom;
+    return isTiff || kind.is(niftiFormat()) || kind.is(npyFormat()) || kind.is(dicomFormat());
 }
 
 }  // namespace

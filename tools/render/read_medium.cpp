@@ -12,6 +12,7 @@
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/optics/emission_lights.h"
 #include "deltasplat/optics/presets.h"
+#include "formats/format.h"
 #include "formats/input_kind.h"
 #include "lighting/part_looks.h"
 #include "lighting/part_sampler.h"
@@ -36,7 +37,7 @@ std::string namesOf(const std::vector<VolumeEntry>& entries) {
 }
 
 void requireVdb(const std::filesystem::path& input, const std::string& option) {
-    if (findInput(input, {}).format == InputKind::Format::kVdb) return;
+    if (findInput(input, {}).is(vdbFormat())) return;
     throw Error(ErrorCode::kUsage, option, "it with " + input.string(), "it with a .vdb input");
 }
 

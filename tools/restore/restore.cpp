@@ -11,6 +11,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
+#include "formats/format.h"
 #include "formats/input_files.h"
 #include "formats/input_kind.h"
 #include "options/input_options.h"
@@ -47,7 +48,7 @@ void declareOptions(CLI::App& app, RestoreCommand& command) {
 
 void requireVdb(const std::filesystem::path& input) {
     const InputKind kind = findInput(input, {});
-    if (kind.format == InputKind::Format::kVdb) return;
+    if (kind.is(vdbFormat())) return;
     if (inputsAreConfined()) requireConfined(input);
     throw Error(ErrorCode::kInput, input.string(), "another format",
                 "a .vdb of delta grids (convert takes other "

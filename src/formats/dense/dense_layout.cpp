@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/dense/dense_layout.h"
 
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
@@ -14,26 +13,6 @@
 #include "volume/tree_grid.h"
 
 namespace deltasplat {
-
-namespace {
-
-std::string noHeader(const DenseLayout&, const std::string&) {
-    return {};
-}
-
-constexpr std::array<DenseFormat, 9> kFormats{{
-    {".raw", "", false, false, false, settleRaw, noHeader},
-    {".raw.gz", "", false, true, false, settleRaw, noHeader},
-    {".npy", "", false, false, true, settleNpy, npyHeader},
-    {".nrrd", "", false, true, true, settleNrrd, nrrdHeader},
-    {".nhdr", ".raw.gz", false, true, true, settleNrrd, nrrdHeader},
-    {".mhd", ".raw", false, false, true, settleMetaImage, metaImageHeader},
-    {".mha", "", false, false, true, settleMetaImage, metaImageHeader},
-    {".nii", "", false, false, true, settleNifti, niftiHeader},
-    {".nii.gz", "", true, true, true, settleNifti, niftiHeader},
-}};
-
-}  // namespace
 
 glm::dvec3 DenseLayout::spacing() const {
     glm::dvec3 lengths;
@@ -68,7 +47,7 @@ void DenseLayout::turnTo(const std::string& otherSpace) {
     space = otherSpace;
 }
 
-void DenseLayout::noteLabels(const std::string& format, bool all, Notes& notes) const {
+void DenseLayout::noteLabels(const std::string& format, bool all, WriteNotes& notes) const {
     if (!labels || (!all && labels->entries.empty())) return;
     const std::string named = labels->entries.empty() ? "" : "names and colours of labels";
     const std::string said = all ? "that values are labels" : "";
@@ -82,13 +61,6 @@ void DenseLayout::turnToMillimetres() {
     if (lengthUnit.empty() || lengthUnit == "mm") return;
     scaleLengths(worldFromIndex, millimetresIn(lengthUnit));
     lengthUnit = "mm";
-}
-
-const DenseFormat* findDenseFormat(const std::string& extension) {
-    for (const DenseFormat& format : kFormats) {
-        if (extension == format.extension) return &format;
-    }
-    return nullptr;
 }
 
 namespace {
@@ -123,7 +95,7 @@ RawType chooseType(const Volume& volume, const ValueFacts& facts, bool wide) {
 
 }  // namespace
 
-RawType denseType(const Volume& volume, const ValueFacts& facts, bool wide, Notes& notes) {
+RawType denseType(const Volume& volume, const ValueFacts& facts, bool wide, WriteNotes& notes) {
     const RawType type = chooseType(volume, facts, wide);
     const std::string name = rawTypeName(type);
     const std::string before = sourceType(volume).empty() ? volume.type : sourceType(volume);

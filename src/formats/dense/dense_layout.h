@@ -15,9 +15,9 @@
 namespace deltasplat {
 
 /// Collects the notes of a WriteReport.
-class Notes {
+class WriteNotes {
   public:
-    Notes(WriteReport& report, const std::filesystem::path& file)
+    WriteNotes(WriteReport& report, const std::filesystem::path& file)
         : report_(report), file_(file.string()) {}
     /// A detail that is there, but otherwise.
     void remark(const std::string& what) { report_.notes.push_back(file_ + ": " + what); }
@@ -54,7 +54,7 @@ struct DenseLayout {
     void turnTo(const std::string& otherSpace);
     /// Says that names and colours of labels are lost, if there are any, or with `all` that values
     /// are labels.
-    void noteLabels(const std::string& format, bool all, Notes& notes) const;
+    void noteLabels(const std::string& format, bool all, WriteNotes& notes) const;
     /// Turns known lengths into millimetres, which is what other programs take lengths for.
     void turnToMillimetres();
 };
@@ -68,28 +68,15 @@ struct DenseFormat {
     bool wideIntegers;  ///< it has integers of 64 bits
     /// Brings a layout into the format's terms, and says what the format does not hold.
     /// @throw Error(kFailed) if the format cannot hold it
-    void (*settle)(DenseLayout& layout, const std::string& file, Notes& notes);
+    void (*settle)(DenseLayout& layout, const std::string& file, WriteNotes& notes);
     /// Returns the bytes before the values. `dataFile` is the name of the other file.
     std::string (*header)(const DenseLayout& layout, const std::string& dataFile);
 };
-
-/// Returns the format of a file, by its extension; nullptr if it has none.
-const DenseFormat* findDenseFormat(const std::string& extension);
-
-void settleRaw(DenseLayout& layout, const std::string& file, Notes& notes);
-void settleNpy(DenseLayout& layout, const std::string& file, Notes& notes);
-std::string npyHeader(const DenseLayout& layout, const std::string& dataFile);
-void settleNrrd(DenseLayout& layout, const std::string& file, Notes& notes);
-std::string nrrdHeader(const DenseLayout& layout, const std::string& dataFile);
-void settleMetaImage(DenseLayout& layout, const std::string& file, Notes& notes);
-std::string metaImageHeader(const DenseLayout& layout, const std::string& dataFile);
-void settleNifti(DenseLayout& layout, const std::string& file, Notes& notes);
-std::string niftiHeader(const DenseLayout& layout, const std::string& dataFile);
 
 /// Returns the type in which a dense format stores a volume: the type that it had before it was a
 /// .vdb (kSourceTypeKey) or its own if that holds every value, otherwise float32 or, if that does
 /// not hold every value, float64. Says so where the type is another one.
 /// @param wide  whether the format has integers of 64 bits
-RawType denseType(const Volume& volume, const ValueFacts& facts, bool wide, Notes& notes);
+RawType denseType(const Volume& volume, const ValueFacts& facts, bool wide, WriteNotes& notes);
 
 }  // namespace deltasplat

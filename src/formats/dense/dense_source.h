@@ -80,12 +80,6 @@ Volume readDense(const DenseSource& source, const ReadOptions& options, const Li
 Volume readSparse(const DenseSource& source, double background, const ReadOptions& options,
                   const Listener& listener);
 
-/// Opens what is no .vdb, whatever it is, by its headers.
-/// @param kind  as findInput returns it for `input`
-/// @throw as readVolume
-DenseSource openDense(const std::filesystem::path& input, const InputKind& kind,
-                      const ReadOptions& options, const Listener& listener);
-
 /// Reads as readDense, with unsigned integers as readCompared keeps them.
 Volume readDenseUnsigned(const DenseSource& source, const ReadOptions& options,
                          const Listener& listener);

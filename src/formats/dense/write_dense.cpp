@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/dense/write_dense.h"
 
+#include <zlib.h>
 #include <algorithm>
 #include <cerrno>
+#include <cstddef>
+#include <filesystem>
 #include <glm/vector_relational.hpp>
+#include <limits>
 #include <memory>
+#include <new>
 #include <optional>
 #include <system_error>
 #include <vector>
@@ -12,18 +17,97 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "files/file_name.h"
 #include "formats/dense/dense_layout.h"
 #include "formats/dense/dense_values.h"
 #include "formats/dense/value_facts.h"
-#include "formats/packed_output.h"
 #include "formats/vdb/grid_metadata.h"
 #include "volume/box_voxels.h"
 #include "volume/tree_grid.h"
 #include "volume/tree_types.h"
 
 namespace deltasplat {
+namespace {
+
+/// An AtomicFile whose bytes pass through gzip from some point on. The same bytes in give the same
+/// bytes out: the gzip header holds neither a time nor a name.
+class PackedOutput {
+  public:
+    /// @throw Error(kOutput) as AtomicFile
+    explicit PackedOutput(const std::filesystem::path& finalPath);
+    ~PackedOutput();
+    PackedOutput(const PackedOutput&) = delete;
+    PackedOutput& operator=(const PackedOutput&) = delete;
+
+    /// Packs all bytes from here on. To be called once.
+    void beginGzip();
+    /// @throw Error(kOutput) if not all bytes can be written
+    void write(const void* bytes, std::size_t size);
+    /// Ends writing, so that what is left to do in commit() is the renaming.
+    /// @throw Error(kOutput) if not all bytes could be written
+    void close();
+    /// Gives the file its final name. close() comes first.
+    void commit() { file_.commit(); }
+    /// Gives a data file and this one, its header, their final names, as AtomicFile does.
+    void commitWithData(PackedOutput& data) { file_.commitWithData(data.file_); }
+
+  private:
+    void deflateInput(int flush);
+
+    AtomicFile file_;
+    std::vector<unsigned char> packed_;  // empty: not packing
+    z_stream stream_{};
+};
+
+PackedOutput::PackedOutput(const std::filesystem::path& finalPath) : file_(finalPath) {}
+
+PackedOutput::~PackedOutput() {
+    if (!packed_.empty()) ::deflateEnd(&stream_);
+}
+
+void PackedOutput::beginGzip() {
+    constexpr int kGzipWindow = 15 + 16;  // the largest window; 16 asks for gzip's own header
+    constexpr int kMemoryLevel = 8;
+    const int result = ::deflateInit2(&stream_, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kGzipWindow,
+                                      kMemoryLevel, Z_DEFAULT_STRATEGY);
+    if (result != Z_OK) throw std::bad_alloc();
+    packed_.resize(std::size_t{1} << 18);
+}
+
+void PackedOutput::write(const void* bytes, std::size_t size) {
+    if (packed_.empty()) return file_.write(bytes, size);
+    // zlib never writes to its input, which is not const for historical reasons.
+    stream_.next_in = static_cast<Bytef*>(const_cast<void*>(bytes));
+    while (size > 0) {
+        constexpr std::size_t kMost = std::numeric_limits<uInt>::max();
+        stream_.avail_in = uInt(std::min(size, kMost));
+        size -= stream_.avail_in;
+        deflateInput(Z_NO_FLUSH);
+    }
+}
+
+void PackedOutput::close() {
+    if (!packed_.empty()) {
+        stream_.avail_in = 0;
+        deflateInput(Z_FINISH);
+    }
+    file_.close();
+}
+
+void PackedOutput::deflateInput(int flush) {
+    int result = Z_OK;
+    do {
+        stream_.next_out = packed_.data();
+        stream_.avail_out = uInt(packed_.size());
+        result = ::deflate(&stream_, flush);
+        file_.write(packed_.data(), packed_.size() - stream_.avail_out);
+    } while (flush == Z_FINISH ? result == Z_OK : stream_.avail_out == 0);
+}
+
+}  // namespace
+
 namespace {
 
 constexpr int kBlock = 8;
@@ -81,7 +165,7 @@ void requireSpace(const std::filesystem::path& file, const std::string& what,
                                         humanBytes(double(space.available)) + ", which is free");
 }
 
-void noteLostStates(const Volume& volume, const IndexBox& box, Notes& notes) {
+void noteLostStates(const Volume& volume, const IndexBox& box, WriteNotes& notes) {
     if (!volume.hasBackground) return;
     const std::uint64_t inactive = voxelsOf(box) - volume.activeCount;
     if (inactive != 0) {
@@ -99,7 +183,7 @@ void noteLostStates(const Volume& volume, const IndexBox& box, Notes& notes) {
 }
 
 DenseLayout layoutOf(const Volume& volume, const IndexBox& box, const ValueFacts& facts,
-                     const DenseFormat& format, Notes& notes) {
+                     const DenseFormat& format, WriteNotes& notes) {
     DenseLayout layout;
     layout.dims = box.dims();
     layout.type = denseType(volume, facts, format.wideIntegers, notes);
@@ -193,7 +277,7 @@ WriteReport writeDense(const std::filesystem::path& file, const DenseFormat& for
     const IndexBox box = boxOf(volume);
     requireVoxels(file, volume, box);
     WriteReport report;
-    Notes notes(report, file);
+    WriteNotes notes(report, file);
     const ValueFacts facts = factsOf(volume);
     DenseLayout layout = layoutOf(volume, box, facts, format, notes);
     format.settle(layout, file.string(), notes);

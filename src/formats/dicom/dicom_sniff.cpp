@@ -10,6 +10,7 @@
 
 #include "base/text.h"
 #include "files/file_name.h"
+#include "formats/format.h"
 
 namespace deltasplat {
 
@@ -152,6 +153,21 @@ DicomSeries chooseSeries(const std::filesystem::path& input, std::vector<DicomSe
     throw Error(ErrorCode::kInput, input.string(),
                 std::to_string(series.size()) + " DICOM series: " + listText(series),
                 "one, chosen by `series` UID");
+}
+
+namespace {
+
+DenseSource openSeries(const std::filesystem::path& input, const InputKind& kind,
+                       const ReadOptions& options, const Listener&) {
+    return openDicom(input, kind.name,
+                     chooseSeries(input, findSeries(input, kind.files), options.series));
+}
+
+}  // namespace
+
+const Format& dicomFormat() {
+    static const Format format{.extensions = {".dcm"}, .mayBePacked = false, .open = openSeries};
+    return format;
 }
 
 }  // namespace deltasplat

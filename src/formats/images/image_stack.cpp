@@ -10,7 +10,9 @@
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "files/file_name.h"
+#include "formats/format.h"
 #include "formats/name_signs.h"
+#include "formats/readers.h"
 
 namespace deltasplat {
 namespace {
@@ -225,6 +227,24 @@ bool namedBefore(const std::filesystem::path& a, const std::filesystem::path& b)
 
 void sortByNumbers(std::vector<std::filesystem::path>& files) {
     std::sort(files.begin(), files.end(), namedBefore);
+}
+
+namespace {
+
+DenseSource openStack(const std::filesystem::path& input, const InputKind& kind,
+                      const ReadOptions& options, const Listener& listener) {
+    return openImages(input, kind.name, kind.files, options, listener);
+}
+
+}  // namespace
+
+const Format& imageFormat() {
+    static const Format format{
+        .extensions = {".tif", ".tiff", ".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".exr"},
+        .mayBePacked = false,
+        .saysPlace = false,
+        .open = openStack};
+    return format;
 }
 
 }  // namespace deltasplat

@@ -11,7 +11,7 @@
 #include "base/bits.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
-#include "formats/dense/dense_layout.h"
+#include "formats/nifti/read_nifti.h"
 #include "volume/placement.h"
 
 namespace deltasplat {
@@ -98,7 +98,7 @@ glm::dmat4 asFloats(const glm::dmat4& matrix) {
 
 }  // namespace
 
-void settleNifti(DenseLayout& layout, const std::string& file, Notes& notes) {
+void settleNifti(DenseLayout& layout, const std::string& file, WriteNotes& notes) {
     const int most = std::max({layout.dims.x, layout.dims.y, layout.dims.z});
     if (most > kMostVoxels) {
         throw Error(ErrorCode::kFailed, file, dimsText(layout.dims) + " voxels",

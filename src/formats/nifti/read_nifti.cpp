@@ -20,10 +20,11 @@
 #include "files/file_name.h"
 #include "formats/choose_volume.h"
 #include "formats/dense/dense_source.h"
+#include "formats/format.h"
 #include "formats/raw/raw_file.h"
-#include "formats/readers.h"
 #include "volume/length_unit.h"
 #include "volume/placement.h"
+#include "volume/volume_checks.h"
 
 namespace deltasplat {
 
@@ -383,8 +384,10 @@ NiftiHeader readNiftiHeader(const std::filesystem::path& file, const Listener& l
     return header;
 }
 
-DenseSource openNifti(const std::filesystem::path& path, const ReadOptions& options,
-                      const Listener& listener) {
+namespace {
+
+DenseSource openNifti(const std::filesystem::path& path, const InputKind&,
+                      const ReadOptions& options, const Listener& listener) {
     const NiftiHeader header = readNiftiHeader(path, listener);
     RawFile file{header.dataFile, header.layout, packingOf(header.dataFile)};
     file.mayGoOn = true;
@@ -400,6 +403,27 @@ DenseSource openNifti(const std::filesystem::path& path, const ReadOptions& opti
     source.lengthUnit = header.lengthUnit;
     if (header.isLabels) source.labels = std::make_shared<const LabelList>();
     return rescaled(std::move(source), header.rescale);
+}
+
+// The two files of a NIfTI pair, that which was named first.
+std::vector<std::filesystem::path> withPartner(const std::filesystem::path& input) {
+    std::vector<std::filesystem::path> files{input};
+    for (const std::filesystem::path& file : niftiFiles(input))
+        if (file != input) files.push_back(file);
+    return files;
+}
+
+}  // namespace
+
+const Format& niftiFormat() {
+    static const Format format{
+        .extensions = {".nii", ".hdr", ".img"},
+        .mayHoldSeveral = true,
+        .open = openNifti,
+        .files = withPartner,
+        .written = {{".nii", "", false, false, true, settleNifti, niftiHeader},
+                    {".nii.gz", "", true, true, true, settleNifti, niftiHeader}}};
+    return format;
 }
 
 }  // namespace deltasplat

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "deltasplat/progress.h"
+#include "formats/dense/dense_layout.h"
 #include "formats/dense/rescale.h"
 #include "formats/raw/raw_format.h"
 
@@ -36,5 +37,9 @@ std::vector<std::filesystem::path> niftiFiles(const std::filesystem::path& file)
 /// no place, units that become millimetres, a header that has neither form.
 /// @throw Error(kInput) if it is no NIfTI header or says what cannot be meant or is not supported
 NiftiHeader readNiftiHeader(const std::filesystem::path& file, const Listener& listener);
+
+/// As DenseFormat has them.
+void settleNifti(DenseLayout& layout, const std::string& file, WriteNotes& notes);
+std::string niftiHeader(const DenseLayout& layout, const std::string& dataFile);
 
 }  // namespace deltasplat

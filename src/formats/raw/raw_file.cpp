@@ -12,7 +12,9 @@
 #include "files/file_bytes.h"
 #include "files/file_name.h"
 #include "formats/dense/dense_source.h"
-#include "formats/readers.h"
+#include "formats/format.h"
+#include "formats/raw/raw_note.h"
+#include "volume/volume_checks.h"
 
 namespace deltasplat {
 
@@ -117,7 +119,11 @@ DenseSource denseSourceOf(const RawFile& file) {
     return source;
 }
 
-DenseSource openRaw(const std::filesystem::path& path, const RawFormat& format) {
+namespace {
+
+DenseSource openRaw(const std::filesystem::path& path, const InputKind&, const ReadOptions& options,
+                    const Listener&) {
+    const RawFormat& format = options.raw;
     RawFile file{path, resolveRawLayout(path, format)};
     requireRegularFile(path);
     // What it begins with tells, but that values may begin as gzip does, and a packed file be cut
@@ -131,6 +137,18 @@ DenseSource openRaw(const std::filesystem::path& path, const RawFormat& format) 
     source.worldFromIndex = glm::scale(glm::translate(glm::dmat4(1), format.origin),
                                        format.spacing.value_or(glm::dvec3(1)));
     return source;
+}
+
+}  // namespace
+
+const Format& rawVolumeFormat() {
+    static const Format format{
+        .extensions = {".raw"},
+        .saysPlace = false,
+        .open = openRaw,
+        .written = {{".raw", "", false, false, false, settleRaw, noHeader},
+                    {".raw.gz", "", false, true, false, settleRaw, noHeader}}};
+    return format;
 }
 
 }  // namespace deltasplat

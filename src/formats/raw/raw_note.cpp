@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "formats/raw/raw_note.h"
+
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "base/text.h"
 #include "deltasplat/error.h"
-#include "formats/dense/dense_layout.h"
+#include "formats/raw/raw_format.h"
 
 namespace deltasplat {
 namespace {
@@ -20,9 +22,10 @@ bool namesBigEndian(const std::string& file, const DenseLayout& layout) {
     }
 }
 
-// What the file itself does not say and options can, and what nothing brings back.
+}  // namespace
+
 void notePlace(const DenseLayout& layout, const std::string& lack, std::string options,
-               Notes& notes) {
+               WriteNotes& notes) {
     const glm::dvec3 spacing = layout.spacing(), origin = layout.origin();
     if (spacing != glm::dvec3(1)) options += " `spacing` " + numberText(spacing);
     if (origin != glm::dvec3(0)) options += " `origin` " + numberText(origin);
@@ -39,10 +42,8 @@ void notePlace(const DenseLayout& layout, const std::string& lack, std::string o
     if (!dropped.empty()) notes.loss(lack + ", which drops" + dropped);
 }
 
-}  // namespace
-
 // A file without a header: what its name does not say, the options have to when it is read.
-void settleRaw(DenseLayout& layout, const std::string& file, Notes& notes) {
+void settleRaw(DenseLayout& layout, const std::string& file, WriteNotes& notes) {
     std::string options;
     const bool ordered = rawTypeBytes(layout.type) > 1;
     layout.bigEndian = ordered && namesBigEndian(file, layout);
@@ -52,11 +53,6 @@ void settleRaw(DenseLayout& layout, const std::string& file, Notes& notes) {
     }
     notePlace(layout, "no header", options, notes);
     layout.noteLabels("a file without a header", true, notes);
-}
-
-void settleNpy(DenseLayout& layout, const std::string&, Notes& notes) {
-    notePlace(layout, "no place in its header", "", notes);
-    layout.noteLabels("NumPy's format", true, notes);
 }
 
 }  // namespace deltasplat

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "formats/dense/dense_layout.h"
+#include "formats/text/text_header.h"
 
 namespace deltasplat {
 namespace {
@@ -63,7 +64,7 @@ std::string vectorText(const glm::dvec3& v) {
 
 }  // namespace
 
-void settleMetaImage(DenseLayout& layout, const std::string&, Notes& notes) {
+void settleMetaImage(DenseLayout& layout, const std::string&, WriteNotes& notes) {
     layout.turnTo("LPS");
     // ITK takes places for millimetres, and scales sizes alone where the header has another unit.
     layout.turnToMillimetres();

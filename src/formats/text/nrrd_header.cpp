@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "deltasplat/ingest/label_list.h"
 #include "formats/dense/dense_layout.h"
+#include "formats/text/text_header.h"
 
 namespace deltasplat {
 namespace {
@@ -71,7 +72,7 @@ std::string typeText(RawType type) {
 }  // namespace
 
 // NRRD holds everything that a layout has.
-void settleNrrd(DenseLayout&, const std::string&, Notes&) {}
+void settleNrrd(DenseLayout&, const std::string&, WriteNotes&) {}
 
 std::string nrrdHeader(const DenseLayout& layout, const std::string& dataFile) {
     const glm::dmat4& matrix = layout.worldFromIndex;

@@ -17,10 +17,12 @@
 #include "files/file_name.h"
 #include "formats/choose_volume.h"
 #include "formats/dense/dense_source.h"
+#include "formats/format.h"
 #include "formats/raw/raw_file.h"
 #include "formats/raw/raw_load.h"
-#include "formats/readers.h"
+#include "formats/text/text_header.h"
 #include "formats/text/text_volume.h"
+#include "volume/volume_checks.h"
 
 namespace deltasplat {
 namespace {
@@ -397,16 +399,56 @@ DenseSource openTextVolume(const TextVolume& volume, const ReadOptions& options,
     return rescaled(std::move(source), volume.rescale);
 }
 
-}  // namespace
-
-DenseSource openNrrd(const std::filesystem::path& file, const ReadOptions& options,
-                     const Listener& listener) {
+DenseSource openNrrd(const std::filesystem::path& file, const InputKind&,
+                     const ReadOptions& options, const Listener& listener) {
     return openTextVolume(readNrrdVolume(file, listener), options, listener);
 }
 
-DenseSource openMetaImage(const std::filesystem::path& file, const ReadOptions& options,
-                          const Listener& listener) {
+DenseSource openMetaImage(const std::filesystem::path& file, const InputKind&,
+                          const ReadOptions& options, const Listener& listener) {
     return openTextVolume(readMetaVolume(file, listener), options, listener);
+}
+
+// The header's own file, and that of its data, unless that follows the header.
+std::vector<std::filesystem::path> withData(const std::filesystem::path& header,
+                                            const std::string& dataFile) {
+    if (dataFile.empty()) return {header};
+    return {header, header.parent_path() / dataFile};
+}
+
+std::vector<std::filesystem::path> nrrdFiles(const std::filesystem::path& header) {
+    const TextHeader text = readNrrdHeader(header);
+    const std::string* const name = text.find("datafile");
+    return withData(header, name == nullptr ? "" : *name);
+}
+
+std::vector<std::filesystem::path> metaImageFiles(const std::filesystem::path& header) {
+    const std::string name = readMetaHeader(header).fields.back().value;
+    return withData(header, lowerCase(name) == "local" ? "" : name);
+}
+
+}  // namespace
+
+const Format& nrrdFormat() {
+    static const Format format{
+        .extensions = {".nrrd", ".nhdr"},
+        .mayHoldSeveral = true,
+        .open = openNrrd,
+        .files = nrrdFiles,
+        .written = {{".nrrd", "", false, true, true, settleNrrd, nrrdHeader},
+                    {".nhdr", ".raw.gz", false, true, true, settleNrrd, nrrdHeader}}};
+    return format;
+}
+
+const Format& metaImageFormat() {
+    static const Format format{
+        .extensions = {".mhd", ".mha"},
+        .mayHoldSeveral = true,
+        .open = openMetaImage,
+        .files = metaImageFiles,
+        .written = {{".mhd", ".raw", false, false, true, settleMetaImage, metaImageHeader},
+                    {".mha", "", false, false, true, settleMetaImage, metaImageHeader}}};
+    return format;
 }
 
 }  // namespace deltasplat

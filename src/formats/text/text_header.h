@@ -9,6 +9,9 @@
 
 namespace deltasplat {
 
+struct DenseLayout;
+class WriteNotes;
+
 /// The lines of a header that is text, as NRRD and MetaImage have it. Fields that are not spelled
 /// as their format spells them, or given twice, are refused: programs read them differently.
 struct TextHeader {
@@ -43,5 +46,11 @@ TextHeader readMetaHeader(const std::filesystem::path& file);
 /// Returns the whole numbers from 1 to 2^30 that `text` holds between blanks.
 /// @throw Error(kInput) "<where>: got sizes 4 -3 2; expected whole numbers from 1 to 1073741824"
 std::vector<std::int64_t> parseSizes(const std::string& where, const std::string& text);
+
+/// As DenseFormat has them.
+void settleNrrd(DenseLayout& layout, const std::string& file, WriteNotes& notes);
+std::string nrrdHeader(const DenseLayout& layout, const std::string& dataFile);
+void settleMetaImage(DenseLayout& layout, const std::string& file, WriteNotes& notes);
+std::string metaImageHeader(const DenseLayout& layout, const std::string& dataFile);
 
 }  // namespace deltasplat

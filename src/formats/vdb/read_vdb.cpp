@@ -13,6 +13,7 @@
 #include "deltasplat/error.h"
 #include "formats/delta/delta_format.h"
 #include "formats/delta/read_delta_grid.h"
+#include "formats/format.h"
 #include "formats/input_files.h"
 #include "formats/input_kind.h"
 #include "formats/readers.h"
@@ -316,7 +317,7 @@ std::optional<Volume> readPackedVolume(const std::filesystem::path& path,
     const DefaultFloats floats;
     try {
         const InputKind kind = findInput(path, {});
-        if (kind.format != InputKind::Format::kVdb) return std::nullopt;
+        if (!kind.is(vdbFormat())) return std::nullopt;
         if (inputsAreConfined()) requireConfined(path);
         const VdbFile file(path);
         const ChosenGrid chosen = chooseGrids(path.string(), file, options.gridName, false).front();
@@ -353,6 +354,11 @@ void readVdb(const std::filesystem::path& path, const ReadOptions& options, bool
     for (const VdbGrid& grid : file.grids()) {
         if (!grid.isScalar()) visitor.other(grid.name, grid.type);
     }
+}
+
+const Format& vdbFormat() {
+    static const Format format{.extensions = {".vdb"}};
+    return format;
 }
 
 }  // namespace deltasplat

@@ -91,7 +91,7 @@ class VdbFile {
 
     /// How to find where leaves lie: by what the file notes of their sizes (OpenVDB's
     /// "file_delayed_load"), or by walking over all of them, which `kByNotes` does where there are
-    /// no notes. Notes may be wrong: then leaves look damaged.
+    /// no notes. WriteNotes may be wrong: then leaves look damaged.
     enum class Find { kByNotes, kByWalking };
     /// Finds the leaves of a grid of int32 or int64 with background 0, unless there are active
     /// tiles beside them. Their values are read when they are unpacked.

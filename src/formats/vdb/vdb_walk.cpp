@@ -180,7 +180,7 @@ class Walk {
             openvdb::CoordBBox::createCube(openvdb::Coord(origin.data()), kUpperExtent));
     }
 
-    // Notes which voxels are active.
+    // WriteNotes which voxels are active.
     // @param values     of a node or leaf at `origin`
     // @param childLog2  of the voxels that one of its places has along an axis
     template <int kLog2>

@@ -47,7 +47,8 @@ void requireValue(const std::string& type, double value) {
 }
 
 // Returns the value to drop, or says that there is none.
-std::optional<double> valueToDrop(const Volume& volume, const WriteOptions& options, Notes& notes) {
+std::optional<double> valueToDrop(const Volume& volume, const WriteOptions& options,
+                                  WriteNotes& notes) {
     const std::optional<double> dropped = droppedValue(volume, options);
     if (!dropped) {
         notes.remark(
@@ -57,7 +58,7 @@ std::optional<double> valueToDrop(const Volume& volume, const WriteOptions& opti
 }
 
 TreeGrid sparseGrid(const TreeGrid& grid, const Volume& volume, const WriteOptions& options,
-                    Notes& notes) {
+                    WriteNotes& notes) {
     const std::optional<double> dropped = valueToDrop(volume, options, notes);
     if (!dropped) return grid;
     const double value = *dropped;
@@ -79,7 +80,7 @@ TreeGrid sparseGrid(const TreeGrid& grid, const Volume& volume, const WriteOptio
 }
 
 // Says what a volume without OpenVDB's types is stored as, if that has another name.
-void noteType(const Volume& volume, const std::string& type, bool half, Notes& notes) {
+void noteType(const Volume& volume, const std::string& type, bool half, WriteNotes& notes) {
     const bool same = volume.type == type || (volume.type == "float32" && type == "float") ||
                       (volume.type == "float64" && type == "double");
     // What was not read exactly has been said.
@@ -89,7 +90,7 @@ void noteType(const Volume& volume, const std::string& type, bool half, Notes& n
 }
 
 // Returns what is stored of a volume that has codes alone. No tree of values is made.
-WrittenGrid storedCodes(Volume volume, const WriteOptions& options, Notes& notes) {
+WrittenGrid storedCodes(Volume volume, const WriteOptions& options, WriteNotes& notes) {
     const std::string type = gridTypeOf(volume);
     double background = volume.hasBackground ? volume.background : 0;
     if (options.dropBackground) {
@@ -107,7 +108,7 @@ WrittenGrid storedCodes(Volume volume, const WriteOptions& options, Notes& notes
 }
 
 // Returns the grid as it is to be stored: sparser if that is asked for, in half precision or not.
-WrittenGrid storedGrid(Volume volume, const WriteOptions& options, Notes& notes) {
+WrittenGrid storedGrid(Volume volume, const WriteOptions& options, WriteNotes& notes) {
     if (!volume.source && !(volume.hasBackground && options.dropBackground))
         return storedCodes(std::move(volume), options, notes);
     TreeGrid grid = gridOf(volume);
@@ -139,7 +140,7 @@ VdbMetadata fileMetadata(const std::vector<Volume>& volumes) {
 WriteReport writeGrids(const std::filesystem::path& file, std::vector<Volume> volumes,
                        const WriteOptions& options, const Listener& listener) {
     WriteReport report;
-    Notes notes(report, file);
+    WriteNotes notes(report, file);
     const VdbMetadata metadata = fileMetadata(volumes);
     std::vector<WrittenGrid> grids;
     for (std::size_t i = 0; i < volumes.size(); ++i) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: numpy.lib.format, "NPY format" (numpy.org/doc), versions 1.0 to 3.0: a text in Python's
-// notation behind eight bytes and its length.
-#include "formats/npy/read_npy.h"
-
+// notation behind eight bytes and its length. Version 1.0 is written.
 #include <algorithm>
 #include <bit>
 #include <charconv>
@@ -20,12 +18,23 @@
 #include "files/file_bytes.h"
 #include "files/file_name.h"
 #include "formats/choose_volume.h"
+#include "formats/dense/dense_source.h"
+#include "formats/format.h"
 #include "formats/raw/raw_file.h"
 #include "formats/raw/raw_load.h"
+#include "formats/raw/raw_note.h"
 
 namespace deltasplat {
 
 namespace {
+
+// What the header of a NumPy array file says, checked.
+struct NpyHeader {
+    RawLayout layout;          // of one volume, behind skipBytes; halves are uint16
+    bool half = false;         // the values are halves
+    std::int64_t volumes = 1;  // the product of all axes but the three that count fastest
+    std::string shape;         // for messages: "(5, 64, 64, 36)"
+};
 
 struct Fields {
     std::optional<std::string> type;
@@ -175,9 +184,8 @@ void setShape(const std::filesystem::path& file, const Fields& fields, NpyHeader
     }
 }
 
-}  // namespace
-
-NpyHeader readNpyHeader(const std::filesystem::path& file) {
+// Reads and checks the header.
+NpyHeader readHeader(const std::filesystem::path& file) {
     const auto [text, start] = readText(file);
     const std::optional<Fields> fields = Parser(text).run();
     if (!fields) {
@@ -190,8 +198,6 @@ NpyHeader readNpyHeader(const std::filesystem::path& file) {
     header.layout.skipBytes = start;
     return header;
 }
-
-namespace {
 
 // IEEE binary16: a sign, five bits of exponent, ten of fraction.
 float floatOfHalf(std::uint16_t bits) {
@@ -231,11 +237,10 @@ DenseSource fromHalves(DenseSource source) {
     return result;
 }
 
-}  // namespace
-
-DenseSource openNpy(const std::filesystem::path& path, const ReadOptions& options) {
+DenseSource openNpy(const std::filesystem::path& path, const InputKind&, const ReadOptions& options,
+                    const Listener&) {
     const RawFormat& format = options.raw;
-    const NpyHeader header = readNpyHeader(path);
+    const NpyHeader header = readHeader(path);
     requireGeometry(format);
     RawFile file{path, header.layout, packingOf(path)};
     file.volumes = header.volumes;
@@ -246,6 +251,44 @@ DenseSource openNpy(const std::filesystem::path& path, const ReadOptions& option
     source.worldFromIndex = glm::scale(glm::translate(glm::dmat4(1), format.origin),
                                        format.spacing.value_or(glm::dvec3(1)));
     return header.half ? fromHalves(std::move(source)) : source;
+}
+
+// NumPy's letters for the kinds of numbers, and their bytes.
+std::string typeText(RawType type) {
+    const int bytes = rawTypeBytes(type);
+    const std::string name = rawTypeName(type);
+    const std::string order = bytes == 1 ? "|" : "<";
+    return order + name.substr(0, 1) + std::to_string(bytes);
+}
+
+// An array a[z][y][x]: the last index counts fastest.
+std::string npyHeader(const DenseLayout& layout, const std::string&) {
+    constexpr std::size_t kUnit = 64, kStart = 10;
+    std::string text = "{'descr': '" + typeText(layout.type) +
+                       "', 'fortran_order': False, 'shape': (" + std::to_string(layout.dims.z) +
+                       ", " + std::to_string(layout.dims.y) + ", " + std::to_string(layout.dims.x) +
+                       "), }";
+    const std::size_t whole = (kStart + text.size() + 1 + kUnit - 1) / kUnit * kUnit;
+    text.resize(whole - kStart - 1, ' ');
+    text += '\n';
+    return std::string("\x93NUMPY\x01\x00", 8) + char(text.size() & 0xff) + char(text.size() >> 8) +
+           text;
+}
+
+void settleNpy(DenseLayout& layout, const std::string&, WriteNotes& notes) {
+    notePlace(layout, "no place in its header", "", notes);
+    layout.noteLabels("NumPy's format", true, notes);
+}
+
+}  // namespace
+
+const Format& npyFormat() {
+    static const Format format{.extensions = {".npy"},
+                               .saysPlace = false,
+                               .mayHoldSeveral = true,
+                               .open = openNpy,
+                               .written = {{".npy", "", false, false, true, settleNpy, npyHeader}}};
+    return format;
 }
 
 }  // namespace deltasplat
