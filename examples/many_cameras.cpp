@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
     try {
         const auto volume = std::make_shared<const Volume>(readVolume(argv[1]));
         // Each slice axis is made ready when a camera first needs it, and kept.
-        const PreparedScene scene({volume, defaultOptics(*volume)});
+        const PreparedScene scene({volume, defaultOptics(*volume)}, {});
         Image image({512, 512});
         for (int i = 0; i < 12; ++i) {
             const CameraOptions options{.azimuthDegrees = 30.0 * i, .elevationDegrees = 20};

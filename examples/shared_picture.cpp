@@ -22,7 +22,7 @@ namespace {
 
 void writePart(const char* input, int part, int parts, const char* output) {
     const auto volume = std::make_shared<const Volume>(readVolume(input));
-    const PreparedScene scene({volume, defaultOptics(*volume)});
+    const PreparedScene scene({volume, defaultOptics(*volume)}, {});
     const CameraOptions camera{.azimuthDegrees = 40, .elevationDegrees = 20};
     const SlabPicture picture(scene, makeCamera(camera, *volume));
     writeSlabs(picture, {.first = part, .last = part, .count = parts}, {}, output);

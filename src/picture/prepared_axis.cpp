@@ -111,8 +111,9 @@ ClassTable classesOf(const PreparedScene::Impl& scene, const AxisPlan& plan, con
     const AxisKey& key = plan.key;
     const double straight = planeDistance(volume.worldFromIndex, key.sliceAxis) / key.parts.slices;
     const auto straightClasses = [&] {
-        return &levels == &volume ? scene.straightClasses(key.sliceAxis)
-                                  : classify(levels, scene.optics, straight);
+        const ClassTable* const known =
+            &levels == &volume ? scene.knownClasses(key.sliceAxis) : nullptr;
+        return known ? *known : classify(levels, scene.optics, straight);
     };
     // What is held does not depend on the camera: straight ways decide.
     first = scene.options.tolerance.isExact() ? plan.steps : 1;
@@ -381,6 +382,11 @@ std::size_t PreparedScene::Impl::blocksSeen(int sliceAxis) const {
         });
     }
     return *blocks;
+}
+
+const ClassTable* PreparedScene::Impl::knownClasses(int sliceAxis) const {
+    const std::lock_guard lock(factsMutex_);
+    return straightClasses_[std::size_t(sliceAxis)].get();
 }
 
 const ClassTable& PreparedScene::Impl::straightClasses(int sliceAxis) const {

@@ -108,6 +108,8 @@ struct PreparedScene::Impl {
     std::size_t blocksSeen(int sliceAxis) const;
     /// Returns the classes of whole voxels in straight steps along an axis; made once for each.
     const ClassTable& straightClasses(int sliceAxis) const;
+    /// Returns them if they have been asked for, or null.
+    const ClassTable* knownClasses(int sliceAxis) const;
     /// Memory for sheets and layers, which pictures of the scene leave for those behind them.
     std::shared_ptr<KeptMemory> memory = std::make_shared<KeptMemory>();
 

@@ -8,6 +8,9 @@
 #include <random>
 #include <vector>
 
+#include "deltasplat/error.h"
+#include "deltasplat/optics/transfer_function.h"
+#include "deltasplat/render.h"
 #include "support/error_of.h"
 #include "support/same_picture.h"
 #include "support/some_scene.h"
@@ -190,6 +193,16 @@ TEST(Overscan, isRefusedWhereThereIsNone) {
     options.overscanPixels = {0, -1};
     EXPECT_EQ(errorOf([&] { test::cameraOf(*volume, options); }),
               "usage: `overscanPixels`: got 0,-1; expected two numbers within 0..1000000");
+}
+
+// What the program makes of a volume if nothing is asked for.
+TEST(Picture, nobodyHasToSayHow) {
+    const Volume& volume = *test::someVolume();
+    RenderOptions options;
+    options.optics.transferFunction = defaultRamp(volume);
+    options.splat.mostJoined = kMostJoined;
+    EXPECT_EQ(render(volume).image.rgba, render(volume, options).image.rgba);
+    EXPECT_EQ(render(volume).camera.sizePixels, glm::ivec2(512));
 }
 
 }  // namespace

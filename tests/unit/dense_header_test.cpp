@@ -7,7 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "deltasplat/ingest/label_list.h"
-#include "formats/dense/dense_layout.h"
+#include "formats/format.h"
 #include "unit/convert_helpers.h"
 
 namespace deltasplat::testing {
@@ -23,6 +23,11 @@ DenseLayout layout(const std::string& space, const std::string& unit = "") {
     return layout;
 }
 
+std::string headerOf(const std::string& extension, const DenseLayout& layout,
+                     const std::string& dataFile) {
+    return findDenseFormat(extension)->header(layout, dataFile);
+}
+
 TEST(DenseHeader, Nrrd) {
     const std::string text =
         "NRRD0004\n"
@@ -35,12 +40,12 @@ TEST(DenseHeader, Nrrd) {
         "endian: little\n"
         "encoding: gzip\n"
         "space origin: (10,-20,0.1)\n";
-    EXPECT_EQ(nrrdHeader(layout("RAS"), ""), text + "\n");
-    EXPECT_EQ(nrrdHeader(layout("RAS"), "a b.raw.gz"), text + "data file: a b.raw.gz\n");
-    EXPECT_NE(nrrdHeader(layout("LPS"), "").find("space: left-posterior-superior\n"),
+    EXPECT_EQ(headerOf(".nrrd", layout("RAS"), ""), text + "\n");
+    EXPECT_EQ(headerOf(".nrrd", layout("RAS"), "a b.raw.gz"), text + "data file: a b.raw.gz\n");
+    EXPECT_NE(headerOf(".nrrd", layout("LPS"), "").find("space: left-posterior-superior\n"),
               std::string::npos);
-    EXPECT_NE(nrrdHeader(layout(""), "").find("space dimension: 3\n"), std::string::npos);
-    EXPECT_NE(nrrdHeader(layout("", "um"), "")
+    EXPECT_NE(headerOf(".nrrd", layout(""), "").find("space dimension: 3\n"), std::string::npos);
+    EXPECT_NE(headerOf(".nrrd", layout("", "um"), "")
                   .find("space dimension: 3\nspace units: \"um\" \"um\" \"um\"\n"),
               std::string::npos);
 }
@@ -60,9 +65,9 @@ TEST(DenseHeader, MetaImage) {
         "DimSize = 3 4 5\n"
         "ElementType = MET_SHORT\n";
     // Along j, x falls, and x of LPS grows to the left: j comes from the left.
-    EXPECT_EQ(metaImageHeader(layout("LPS"), ""),
+    EXPECT_EQ(headerOf(".mha", layout("LPS"), ""),
               text + "AnatomicalOrientation = ALS\n" + rest + "ElementDataFile = LOCAL\n");
-    EXPECT_EQ(metaImageHeader(layout(""), "b.raw"), text + rest + "ElementDataFile = b.raw\n");
+    EXPECT_EQ(headerOf(".mha", layout(""), "b.raw"), text + rest + "ElementDataFile = b.raw\n");
 }
 
 template <typename T>
@@ -73,7 +78,7 @@ T at(const std::string& bytes, std::size_t place) {
 }
 
 TEST(DenseHeader, Nifti) {
-    const std::string bytes = niftiHeader(layout("RAS"), "");
+    const std::string bytes = headerOf(".nii", layout("RAS"), "");
     ASSERT_EQ(bytes.size(), 352u);
     EXPECT_EQ(at<std::int32_t>(bytes, 0), 348);
     const std::int16_t dims[] = {3, 3, 4, 5, 1, 1, 1, 1};
@@ -92,19 +97,20 @@ TEST(DenseHeader, Nifti) {
     for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(at<float>(bytes, 280 + 4 * i), rows[i]);
     EXPECT_EQ(bytes.substr(344, 4), std::string("n+1\0", 4));
     EXPECT_EQ(at<std::int32_t>(bytes, 348), 0);  // no extensions
-    EXPECT_EQ(niftiHeader(layout("RAS", "mm"), "")[123], 2);
+    EXPECT_EQ(headerOf(".nii", layout("RAS", "mm"), "")[123], 2);
     EXPECT_EQ(at<std::int16_t>(bytes, 68), 0);  // no intent
     DenseLayout labels = layout("RAS");
     labels.labels = std::make_shared<const LabelList>();
-    EXPECT_EQ(at<std::int16_t>(niftiHeader(labels, ""), 68), 1002);
+    EXPECT_EQ(at<std::int16_t>(headerOf(".nii", labels, ""), 68), 1002);
 }
 
 // Other programs take lengths in NIfTI and MetaImage for millimetres, whatever the header says.
 TEST(DenseHeader, LengthsAreMillimetres) {
     WriteReport report;
-    Notes notes(report, "a");
+    WriteNotes notes(report, "a");
     for (const auto& [unit, factor] : {std::pair{"um", 1e-3}, {"m", 1e3}, {"nm", 1e-6}}) {
-        for (auto* const settle : {settleNifti, settleMetaImage}) {
+        for (auto* const settle :
+             {findDenseFormat(".nii")->settle, findDenseFormat(".mha")->settle}) {
             DenseLayout one = layout("", unit);
             const glm::dvec3 size = one.spacing(), place = one.origin();
             settle(one, "a", notes);
@@ -115,10 +121,10 @@ TEST(DenseHeader, LengthsAreMillimetres) {
             }
         }
     }
-    EXPECT_NE(metaImageHeader(layout("LPS", "mm"), "").find("DistanceUnits = mm\n"),
+    EXPECT_NE(headerOf(".mha", layout("LPS", "mm"), "").find("DistanceUnits = mm\n"),
               std::string::npos);
     DenseLayout unknown = layout("");
-    settleNifti(unknown, "a", notes);
+    findDenseFormat(".nii")->settle(unknown, "a", notes);
     EXPECT_EQ(unknown.worldFromIndex, layout("").worldFromIndex);
 }
 
@@ -127,7 +133,7 @@ TEST(DenseHeader, NrrdSegments) {
     DenseLayout labels = layout("LPS");
     labels.labels = std::make_shared<const LabelList>(
         LabelList{{{3, "liver, left\nlobe", glm::dvec3(0.5, 0.25, 1)}, {12, "", {}}}});
-    const std::string text = nrrdHeader(labels, "");
+    const std::string text = headerOf(".nrrd", labels, "");
     for (const char* const line :
          {"Segment0_ID:=Segment_1\n", "Segment0_Name:=liver, left\\nlobe\n",
           "Segment0_Color:=0.5 0.25 1\n", "Segment0_LabelValue:=3\n", "Segment0_Layer:=0\n",
@@ -136,27 +142,27 @@ TEST(DenseHeader, NrrdSegments) {
         EXPECT_NE(text.find(line), std::string::npos) << line;
     EXPECT_EQ(text.find("Segment1_Color"), std::string::npos);
     labels.labels = std::make_shared<const LabelList>();
-    EXPECT_NE(nrrdHeader(labels, "").find("\nintent_code:=1002\n"), std::string::npos);
-    EXPECT_NE(metaImageHeader(labels, "").find("\nintent_code = 1002\n"), std::string::npos);
+    EXPECT_NE(headerOf(".nrrd", labels, "").find("\nintent_code:=1002\n"), std::string::npos);
+    EXPECT_NE(headerOf(".mha", labels, "").find("\nintent_code = 1002\n"), std::string::npos);
 }
 
 // What is beyond floats would become infinite, or nothing.
 TEST(DenseHeader, NiftiPlacesBeyondFloats) {
     WriteReport report;
-    Notes notes(report, "a.nii");
+    WriteNotes notes(report, "a.nii");
     for (const double scale : {1e-50, 1e50}) {
         for (const int column : {0, 3}) {
             DenseLayout far = layout("RAS");
             far.worldFromIndex[column] *= scale;
             far.worldFromIndex[3].w = 1;
             if (column == 3 && scale < 1) {
-                EXPECT_NO_THROW(settleNifti(far, "a.nii", notes));
+                EXPECT_NO_THROW(findDenseFormat(".nii")->settle(far, "a.nii", notes));
                 continue;
             }
             expectError(ErrorCode::kFailed,
                         "a.nii: got spacing, directions or origin out of range; expected ones "
                         "that 32-bit floats hold, as NIfTI has them",
-                        [&] { settleNifti(far, "a.nii", notes); });
+                        [&] { findDenseFormat(".nii")->settle(far, "a.nii", notes); });
         }
     }
 }
@@ -168,7 +174,7 @@ TEST(DenseHeader, NiftiQuaternion) {
             DenseLayout turned = layout("RAS");
             turned.worldFromIndex = glm::rotate(glm::dmat4(1), angle, glm::dvec3(0.6, -0.8, 0)) *
                                     glm::scale(glm::dmat4(1), {1.5, 2, mirrored ? -3 : 3});
-            const std::string bytes = niftiHeader(turned, "");
+            const std::string bytes = headerOf(".nii", turned, "");
             const double b = at<float>(bytes, 256), c = at<float>(bytes, 260);
             const double d = at<float>(bytes, 264);
             const double a = std::sqrt(std::max(0.0, 1 - b * b - c * c - d * d));
@@ -186,8 +192,8 @@ TEST(DenseHeader, NiftiQuaternion) {
     }
     DenseLayout sheared = layout("RAS");
     sheared.worldFromIndex[1].y = 0.1;
-    EXPECT_EQ(at<std::int16_t>(niftiHeader(sheared, ""), 252), 0);
-    EXPECT_EQ(at<std::int16_t>(niftiHeader(sheared, ""), 254), 1);
+    EXPECT_EQ(at<std::int16_t>(headerOf(".nii", sheared, ""), 252), 0);
+    EXPECT_EQ(at<std::int16_t>(headerOf(".nii", sheared, ""), 254), 1);
 }
 
 // What the files hold behind their headers, unpacked by zlib.

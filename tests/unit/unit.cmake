@@ -5,7 +5,7 @@ deltasplat_tests(base_tests unit
     unit/parallel_sort_test.cpp unit/portable_math_test.cpp unit/threads_test.cpp)
 
 deltasplat_tests(files_tests unit
-    unit/atomic_file_test.cpp unit/checked_json_test.cpp unit/commit_pair_test.cpp
+    unit/atomic_file_test.cpp unit/checked_json_test.cpp
     unit/half_exact_test.cpp unit/printable_test.cpp unit/shared_folder_test.cpp)
 
 deltasplat_tests(volume_tests unit
@@ -34,7 +34,8 @@ deltasplat_tests(foreign_bytes_tests unit
     unit/read_nrrd_test.cpp unit/read_raw_error_test.cpp unit/read_vdb_error_test.cpp)
 
 deltasplat_tests(formats_tests unit
-    unit/column_decoder_test.cpp unit/compare_volumes_test.cpp unit/delta_stream_test.cpp
+    unit/column_decoder_test.cpp unit/commit_pair_test.cpp unit/compare_volumes_test.cpp
+    unit/delta_stream_test.cpp
     unit/dense_header_test.cpp unit/described_images_test.cpp unit/drop_background_test.cpp
     unit/image_claims_test.cpp unit/input_files_test.cpp unit/json_camera_test.cpp
     unit/packed_volume_test.cpp unit/raw_format_test.cpp unit/read_images_test.cpp
