@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
             const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
             std::printf("%3d degrees: %.1f ms, along %c\n", 30 * i, 1e3 * seconds.count(),
                         "xyz"[stats.sliceAxis]);
+            compositeOver(image, {0.02F, 0.04F, 0.1F, 1});
             writeImage(std::string(argv[2]) + "." + std::to_string(i) + ".png", image, {});
         }
     } catch (const Error& error) {

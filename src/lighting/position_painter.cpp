@@ -5,6 +5,7 @@
 #include <glm/mat4x4.hpp>
 #include <limits>
 
+#include "base/enum_name.h"
 #include "optics/voxel_painter.h"
 
 namespace deltasplat {
@@ -81,19 +82,7 @@ Share shareAlong(const glm::dvec3& slope, const IndexBox& box) {
 }  // namespace
 
 std::string colorByName(ColorBy colorBy) {
-    switch (colorBy) {
-        case ColorBy::kValue:
-            return "value";
-        case ColorBy::kX:
-            return "x";
-        case ColorBy::kY:
-            return "y";
-        case ColorBy::kZ:
-            return "z";
-        case ColorBy::kIndex:
-            return "index";
-    }
-    return "value";
+    return enumName(colorBy, {"value", "x", "y", "z", "index"});
 }
 
 std::unique_ptr<const VoxelPainter> makePositionPainter(const Volume& volume, ColorBy colorBy) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/default_floats.h"
+#include "base/enum_name.h"
 #include "base/memory.h"
 #include "base/progress.h"
 #include "base/text.h"
@@ -28,49 +29,15 @@ void requireImageMemory(glm::ivec2 size) {
 }  // namespace
 
 std::string methodName(Method method) {
-    switch (method) {
-        case Method::kAuto:
-            return "auto";
-        case Method::kDelta:
-            return "delta";
-        case Method::kSparse:
-            return "sparse";
-        case Method::kTraditional:
-            return "traditional";
-    }
-    return "auto";
+    return enumName(method, {"auto", "delta", "sparse", "traditional"});
 }
 
 std::string pictureFilterName(PictureFilter filter) {
-    switch (filter) {
-        case PictureFilter::kCatmullRom:
-            return "catmull-rom";
-        case PictureFilter::kMitchell:
-            return "mitchell";
-        case PictureFilter::kGauss:
-            return "gauss";
-        case PictureFilter::kBox:
-            return "box";
-    }
-    return "catmull-rom";
+    return enumName(filter, {"catmull-rom", "mitchell", "gauss", "box"});
 }
 
 std::string modeName(Mode mode) {
-    switch (mode) {
-        case Mode::kComposite:
-            return "composite";
-        case Mode::kXray:
-            return "xray";
-        case Mode::kMip:
-            return "mip";
-        case Mode::kMin:
-            return "min";
-        case Mode::kAverage:
-            return "average";
-        case Mode::kDrr:
-            return "drr";
-    }
-    return "composite";
+    return enumName(mode, {"composite", "xray", "mip", "min", "average", "drr"});
 }
 
 RenderResult render(const Volume& volume, const RenderOptions& options, const Listener& listener) {

@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 #include <numbers>
 
+#include "base/enum_name.h"
 #include "base/portable_math.h"
 #include "base/text.h"
 #include "deltasplat/view/camera.h"
@@ -85,15 +86,7 @@ glm::dvec2 offsetWorld(const Camera& camera, glm::dvec2 pixel) {
 }  // namespace
 
 std::string projectionName(Projection projection) {
-    switch (projection) {
-        case Projection::kOrtho:
-            return "ortho";
-        case Projection::kPerspective:
-            return "perspective";
-        case Projection::kLatlong:
-            return "latlong";
-    }
-    return "ortho";
+    return enumName(projection, {"ortho", "perspective", "latlong"});
 }
 
 double Camera::fovDegrees() const {

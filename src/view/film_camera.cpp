@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/default_floats.h"
+#include "base/enum_name.h"
 #include "base/text.h"
 #include "view/camera_axes.h"
 
@@ -70,19 +71,7 @@ Gate gateOf(const FilmCamera& camera, glm::ivec2 sizePixels) {
 }  // namespace
 
 std::string filmFitName(FilmFit fit) {
-    switch (fit) {
-        case FilmFit::kHorizontal:
-            return "horizontal";
-        case FilmFit::kVertical:
-            return "vertical";
-        case FilmFit::kFill:
-            return "fill";
-        case FilmFit::kOverscan:
-            return "overscan";
-        case FilmFit::kStretch:
-            return "stretch";
-    }
-    return "horizontal";
+    return enumName(fit, {"horizontal", "vertical", "fill", "overscan", "stretch"});
 }
 
 CameraOptions cameraOptions(const FilmCamera& camera, glm::ivec2 sizePixels) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -197,7 +198,8 @@ TEST(Overscan, isRefusedWhereThereIsNone) {
 
 // What the program makes of a volume if nothing is asked for.
 TEST(Picture, nobodyHasToSayHow) {
-    const Volume& volume = *test::someVolume();
+    const std::shared_ptr<const Volume> some = test::someVolume();
+    const Volume& volume = *some;
     RenderOptions options;
     options.optics.transferFunction = defaultRamp(volume);
     options.splat.mostJoined = kMostJoined;

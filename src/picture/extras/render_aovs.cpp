@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/default_floats.h"
+#include "base/enum_name.h"
 #include "base/kept_memory.h"
 #include "base/memory.h"
 #include "base/progress.h"
@@ -380,31 +381,8 @@ class AovRender {
 }  // namespace
 
 std::string aovName(Aov aov) {
-    switch (aov) {
-        case Aov::kDepth:
-            return "depth";
-        case Aov::kFront:
-            return "front";
-        case Aov::kBack:
-            return "back";
-        case Aov::kPosition:
-            return "position";
-        case Aov::kNormal:
-            return "normal";
-        case Aov::kEmission:
-            return "emission";
-        case Aov::kAmbient:
-            return "ambient";
-        case Aov::kDirect:
-            return "direct";
-        case Aov::kTransmittance:
-            return "transmittance";
-        case Aov::kMattes:
-            return "mattes";
-        case Aov::kSamples:
-            break;
-    }
-    return "samples";
+    return enumName(aov, {"depth", "front", "back", "position", "normal", "emission", "ambient",
+                          "direct", "transmittance", "mattes", "samples"});
 }
 
 std::span<const Aov> allAovs() {
