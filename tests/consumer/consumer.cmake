@@ -3,6 +3,11 @@
 # (which keeps paths relative to the folder of a build) has the library's objects already.
 set(DELTASPLAT_PREFIX ${CMAKE_CURRENT_BINARY_DIR}/consumer/prefix)
 
+set(launcher ${CMAKE_CXX_COMPILER_LAUNCHER})
+if(launcher MATCHES "/ccache$")
+    set(launcher ${CMAKE_CURRENT_LIST_DIR}/scripts/ccache.sh)
+endif()
+
 function(deltasplat_consumer_test name)
     set(folder ${PROJECT_BINARY_DIR}-consumer-${name})
     add_test(NAME consumer.${name}
@@ -12,7 +17,7 @@ function(deltasplat_consumer_test name)
                      --build-options -DCMAKE_BUILD_TYPE=${CMAKE_BUILD_TYPE}
                                      -DDELTASPLAT_WERROR=${DELTASPLAT_WERROR}
                                      -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
-                                     -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
+                                     -DCMAKE_CXX_COMPILER_LAUNCHER=${launcher}
                                      "-DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS}" ${ARGN}
                      --test-command ${folder}/consumer)
     set_tests_properties(consumer.${name} PROPERTIES LABELS consumer TIMEOUT 5400)
