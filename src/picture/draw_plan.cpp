@@ -371,7 +371,8 @@ SeenCone seenCone(const ViewPlan& plan, int within) {
     cone.slopeMax = view.slopeMax + border;
     // What is joined lies up to a voxel beside what it is made of, and what is mixed next to it.
     constexpr double kBeside = 2;
-    cone.reach = (plan.footprint.reach() + 2) / plan.footprint.resolution / within + kBeside;
+    const double sheetPixels = plan.footprint.resolution;
+    cone.reach = (plan.footprint.reach() + 2) / sheetPixels / within + kBeside;
     return cone;
 }
 
