@@ -305,8 +305,9 @@ std::optional<int> footprintWidth(const SplatOptions& options, const Factorizati
     return 1;
 }
 
+// @param width  as footprintWidth says
 Footprint footprintOf(const SplatOptions& options, const Camera& camera, const Factorization& view,
-                      const Fineness& fineness) {
+                      const Fineness& fineness, std::optional<int> width) {
     const int within = fineness.parts.within;
     const double pixels = view.pixelsPerVoxel / within;
     const double sigma =
@@ -314,8 +315,7 @@ Footprint footprintOf(const SplatOptions& options, const Camera& camera, const F
     // The kernel is round in voxels, however many slices there are; seen along the middle line of
     // sight.
     const glm::dvec2 shift = view.eye ? middleSlope(camera, view) : view.shiftPerSlice;
-    return makeFootprint(sigma, {shift.y, shift.x}, int(fineness.thinResolution()),
-                         footprintWidth(options, view, fineness), within);
+    return makeFootprint(sigma, {shift.y, shift.x}, int(fineness.thinResolution()), width, within);
 }
 
 Encoding encodingIn(const PreparedScene::Impl& scene, const Factorization& view, bool hasOwnPixel,
@@ -330,8 +330,9 @@ Encoding encodingIn(const PreparedScene::Impl& scene, const Factorization& view,
                    : encodingOf(options.method, painter != nullptr, hasOwnPixel, isDivided);
 }
 
+// @param steps        of the view
 // @param hasOwnPixel  whether voxels are drawn to a sheet pixel each
-AxisPlan axisPlanOf(const PreparedScene::Impl& scene, const Factorization& view,
+AxisPlan axisPlanOf(const PreparedScene::Impl& scene, const Factorization& view, double steps,
                     const Subdivision& parts, bool hasOwnPixel, DrawnFor drawnFor) {
     AxisPlan plan;
     AxisKey& key = plan.key;
@@ -348,7 +349,6 @@ AxisPlan axisPlanOf(const PreparedScene::Impl& scene, const Factorization& view,
     const bool isJoined = parts.joined > 1;
     const bool areSums = scene.hasOneColor() && parts.joinedWithin == 1;
     const bool isOfSteps = isJoined && !areSums && (parts.joined > 2 || !scene.canPairSlices());
-    const double steps = stepsOf(view, *scene.scene.volume);
     key.fromEnd = plan.descending || (isJoined && !view.frontToBack);
     if (isOfSteps) key.steps = steps;
     plan.seenThrough = view.frontToBack ? SeenThrough::kSecond : SeenThrough::kFirst;
@@ -380,14 +380,14 @@ ViewPlan viewPlanOf(const PreparedScene::Impl& scene, const Camera& camera,
                     const Factorization& view, const Fineness& fineness, DrawnFor drawnFor) {
     const Volume& volume = *scene.scene.volume;
     const Subdivision parts = partsIn(view, fineness.parts, volume);
-    const bool hasOwnPixel = footprintWidth(scene.options, view, fineness) == 1;
+    const std::optional<int> width = footprintWidth(scene.options, view, fineness);
     ViewPlan plan;
     plan.view = view;
     plan.thin = subdivided(view, parts);
-    plan.axis = axisPlanOf(scene, view, parts, hasOwnPixel, drawnFor);
     plan.steps = stepsOf(view, volume);
+    plan.axis = axisPlanOf(scene, view, plan.steps, parts, width == 1, drawnFor);
     if (volume.empty()) return plan;
-    plan.footprint = footprintOf(scene.options, camera, view, fineness);
+    plan.footprint = footprintOf(scene.options, camera, view, fineness, width);
     const IndexBox box = boxOfSlices(volume.box, view.sliceAxis, parts);
     plan.sheet = layoutSheet(box, plan.footprint);
     if (!view.eye) return plan;
@@ -408,11 +408,11 @@ double stepsOf(const Factorization& view, const Volume& volume) {
     return std::abs(steps - 1) < kSame ? 1 : steps;
 }
 
-glm::dvec3 indexOfEye(const Factorization& view) {
-    const glm::ivec3 order = sliceOrder(view.sliceAxis);
-    glm::dvec3 eye;
-    for (int i = 0; i < 3; ++i) eye[order[i]] = (*view.eye)[i];
-    return eye;
+glm::dvec3 indexOfEye(const glm::dvec3& eye, int sliceAxis) {
+    const glm::ivec3 order = sliceOrder(sliceAxis);
+    glm::dvec3 index;
+    for (int i = 0; i < 3; ++i) index[order[i]] = eye[i];
+    return index;
 }
 
 DrawPlan planPicture(const PreparedScene::Impl& scene, const Camera& camera, DrawnFor drawnFor,

@@ -54,7 +54,7 @@ DrawPlan planPicture(const PreparedScene::Impl& scene, const Camera& camera, Dra
 double stepsOf(const Factorization& view, const Volume& volume);
 
 /// Returns the index position (x, y, z) that lines of sight of a view begin at.
-/// @param view  from an eye
-glm::dvec3 indexOfEye(const Factorization& view);
+/// @param eye  as Factorization::eye
+glm::dvec3 indexOfEye(const glm::dvec3& eye, int sliceAxis);
 
 }  // namespace deltasplat

@@ -43,7 +43,7 @@ std::vector<std::uint64_t> keyOf(const Factorization& view, const Volume& volume
                                  const std::vector<JoinedVoxels>& some) {
     std::vector<double> numbers;
     if (view.eye) {
-        const glm::dvec3 eye = indexOfEye(view);
+        const glm::dvec3 eye = indexOfEye(*view.eye, view.sliceAxis);
         numbers = {eye.x, eye.y, eye.z};
     } else {
         numbers = {double(view.sliceAxis), double(view.frontToBack), view.shiftPerSlice.x,
@@ -85,7 +85,7 @@ JoinedVoxels JoinJudge::firstUnseen(const std::vector<JoinedVoxels>& some, const
     JoinProbe::LinesThrough lines;
     if (view.eye) {
         for (int along = 0; along < 3; ++along) lights[std::size_t(along)] = lightsAlong(along, 1);
-        lines = [&, eye = indexOfEye(view)](const glm::ivec3& voxel) {
+        lines = [&, eye = indexOfEye(*view.eye, view.sliceAxis)](const glm::ivec3& voxel) {
             return linesFrom(eye, voxel, lights);
         };
     } else {

@@ -118,7 +118,7 @@ PlanePlace PictureView::placePlane() const {
 }
 
 double PictureView::show(Layer& layer, const PicturePart& part, const PlaneBox& whole) const {
-    finish(layer);
+    plane_->finish(layer);
     return plane_->showPart(layer, part, whole);
 }
 

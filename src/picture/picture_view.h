@@ -31,7 +31,6 @@ class PictureView {
     const SlabInput& slabs() const { return *slabs_; }
     const ViewPlan& plan() const { return plan_; }
     const PreparedAxis& axis() const { return *axis_; }
-    const Camera& camera() const { return camera_; }
     const PlaneView& plane() const { return *plane_; }
     /// From (slice, u, v) of the volume's own voxels to the world.
     glm::dmat4 worldFromSlices() const;
@@ -40,14 +39,7 @@ class PictureView {
     /// @param whole  as PlaneView::showPart
     /// @return the most that this can enlarge a difference of layers
     double show(Layer& layer, const PicturePart& part, const PlaneBox& whole = {}) const;
-    /// Makes of a layer, once, what showPart() shows.
-    void finish(Layer& layer) const { plane_->finish(layer); }
-    /// Writes what is seen of a finished layer into a part of the picture.
-    /// @return as show()
-    double showPart(const Layer& finished, const PicturePart& part) const {
-        return plane_->showPart(finished, part);
-    }
-    /// Whether show() and finish() change the layer.
+    /// Whether show() changes the layer.
     bool showChangesLayer() const { return plane_->finishChangesLayer(); }
     /// Most that a layer may differ from the exact one.
     ErrorBound errorBound() const;

@@ -17,6 +17,7 @@
 #include "lighting/part_looks.h"
 #include "optics/class_numbers.h"
 #include "optics/hold_rule.h"
+#include "picture/draw_plan.h"
 #include "volume/box_voxels.h"
 #include "volume/code_blocks.h"
 #include "volume/seen_cone.h"
@@ -82,14 +83,6 @@ void warnOfRounding(const SliceJoiner& joiner, const Listener& listener) {
                   std::to_string(1 << bits) + " levels a channel; `between` 0 draws every voxel");
 }
 
-// The index position (x, y, z) of the eye.
-glm::dvec3 indexOf(const SeenCone& seen, int sliceAxis) {
-    const glm::ivec3 order = sliceOrder(sliceAxis);
-    glm::dvec3 eye;
-    for (int i = 0; i < 3; ++i) eye[order[i]] = seen.eye[i];
-    return eye;
-}
-
 // Returns the words that other optics have, if these tell the same codes apart, or null; classes
 // then get the others' numbers. Where nothing is held and nothing has looks of its own, all that
 // words know of optics is the classes of codes; and of divided voxels how opaque these are, which
@@ -103,7 +96,7 @@ std::shared_ptr<const PackedDeltas> sharedWords(const AxisPlan& plan,
     return takeNumbers(before->classes(), classes) ? before->words : nullptr;
 }
 
-// Returns the classes of whole voxels for an axis' steps, or for straight ones where shorter ones
+// Returns the classes of levels for an axis' steps, or for straight ones where shorter ones
 // would hide some; `first` becomes the steps that they are for.
 ClassTable classesOf(const PreparedScene::Impl& scene, const AxisPlan& plan, const Volume& levels,
                      double& first) {
@@ -326,7 +319,7 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const AxisPlan& pl
     std::shared_ptr<Place> place;
     {
         const std::lock_guard lock(mutex_);
-        if (plan.seen) forgetOtherEyes(indexOf(*plan.seen, key.sliceAxis));
+        if (plan.seen) forgetOtherEyes(indexOfEye(plan.seen->eye, key.sliceAxis));
         otherWay = placeOf(key.otherWay());
         place = placeOf(key);
         if (!place) {
@@ -335,7 +328,7 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const AxisPlan& pl
             places_.push_back(place);
         }
         place->lastUse = ++uses_;
-        if (plan.seen) place->eye = indexOf(*plan.seen, key.sliceAxis);
+        if (plan.seen) place->eye = indexOfEye(plan.seen->eye, key.sliceAxis);
         if (isJoined && key.slabLength == SlabLength::kByCounts) forgetSlants(key);
     }
     const std::lock_guard lock(place->mutex);

@@ -80,20 +80,33 @@ class Classifier {
     std::array<HeldSlots, 4> held_{};  // [part]
 };
 
-// Blocks as they are.
-class WholeBlocks : public BlockSource {
+// What sources have in common: a classifier, looks, and the classes of the block in hand.
+class ClassifiedBlocks : public BlockSource {
   public:
-    explicit WholeBlocks(const SourceTools& tools)
-        : BlockSource({}, false),
-          reader_(tools.slotMap, tools.ramps, tools.options.sliceAxis),
-          looks_(looksOf(tools, {})),
-          classifier_(tools, looks_) {}
-
     BlockLooks* looks() override { return looks_ ? &*looks_ : nullptr; }
     void beginColumn() override {
         classifier_.beginColumn();
         if (looks_) looks_->beginColumn();
     }
+
+  protected:
+    ClassifiedBlocks(const SourceTools& tools, const Subdivision& parts, bool readsAround)
+        : BlockSource(parts, readsAround),
+          looks_(looksOf(tools, parts)),
+          classifier_(tools, looks_) {}
+
+    std::optional<BlockLooks> looks_;
+    Classifier classifier_;
+    BlockClasses classes_{};
+};
+
+// Blocks as they are.
+class WholeBlocks : public ClassifiedBlocks {
+  public:
+    explicit WholeBlocks(const SourceTools& tools)
+        : ClassifiedBlocks(tools, {}, false),
+          reader_(tools.slotMap, tools.ramps, tools.options.sliceAxis) {}
+
     void read(const CodeBlock& block, WordWriter& writer) override {
         if (looks_) looks_->beginBlock(block);
         const glm::ivec3& position = block.position;
@@ -109,10 +122,7 @@ class WholeBlocks : public BlockSource {
 
   private:
     ClassReader reader_;
-    std::optional<BlockLooks> looks_;
-    Classifier classifier_;
     BlockSlots slots_{};
-    BlockClasses classes_{};
 };
 
 // Values around a block, of a tree.
@@ -125,18 +135,13 @@ struct Window {
 };
 
 // Blocks whose voxels are divided, with values mixed from those around.
-class MixedBlocks : public BlockSource {
+class MixedBlocks : public ClassifiedBlocks {
   public:
     explicit MixedBlocks(const SourceTools& tools)
         : MixedBlocks(tools, tools.options.mixer->parts().within == 1) {
         mixed_.resize(std::size_t(divided().parts.voxels()));
     }
 
-    BlockLooks* looks() override { return looks_ ? &*looks_ : nullptr; }
-    void beginColumn() override {
-        classifier_.beginColumn();
-        if (looks_) looks_->beginColumn();
-    }
     void read(const CodeBlock& block, WordWriter& writer) override {
         if (looks_) looks_->beginBlock(block);
         values_.reader.read(block, values_.window);
@@ -157,11 +162,9 @@ class MixedBlocks : public BlockSource {
 
   protected:
     MixedBlocks(const SourceTools& tools, bool alongSlicesOnly)
-        : BlockSource(tools.options.mixer->parts(), true),
+        : ClassifiedBlocks(tools, tools.options.mixer->parts(), true),
           tools_(tools),
-          values_(*tools.codes, tools.options.sliceAxis, alongSlicesOnly),
-          looks_(looksOf(tools, divided().parts)),
-          classifier_(tools, looks_) {}
+          values_(*tools.codes, tools.options.sliceAxis, alongSlicesOnly) {}
 
     // Makes ready what the block becomes, something of which may be seen.
     virtual void mix(const CodeBlock&, const WordWriter&) {
@@ -191,11 +194,8 @@ class MixedBlocks : public BlockSource {
 
     SourceTools tools_;
     Window values_;
-    std::optional<BlockLooks> looks_;
-    BlockClasses classes_{};
 
   private:
-    Classifier classifier_;
     std::vector<BlockSlots> mixed_;  // [part along u][along slices][along v]
 };
 

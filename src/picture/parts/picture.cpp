@@ -28,9 +28,8 @@ class KeepSink : public ViewSink {
         const std::unique_ptr<const PictureView> view = planned.view(planned.axis);
         Layer merged =
             renderSlabs(view->slabs(), seenSlabs(view->slabs()), stats, partOf(listener, 0.2, 1));
-        view->finish(merged);
-        picture_.views.push_back({view->plane(), view->errorBound(), std::move(merged),
-                                  group_.value_or(picture_.whole()), group_.has_value()});
+        picture_.add(view->plane(), view->errorBound(), std::move(merged),
+                     group_.value_or(picture_.whole()), group_.has_value());
     }
     bool isAnyBeyond(float least) const override {
         return std::any_of(picture_.views.begin(), picture_.views.end(), [&](const auto& view) {

@@ -25,10 +25,15 @@ struct Picture::Impl {
     explicit Impl(const Camera& ofCamera) : camera(ofCamera) {}
 
     PixelBox whole() const { return {{0, 0}, camera.sizePixels}; }
-    /// Adds a view behind those before it, wherever they are.
-    void add(const PlaneView& plane, const ErrorBound& bound, Layer layer) {
+    /// Adds a view whose slabs are put together.
+    void add(const PlaneView& plane, const ErrorBound& bound, Layer layer, const PixelBox& part,
+             bool coversOthers) {
         plane.finish(layer);
-        views.push_back({plane, bound, std::move(layer), whole(), !views.empty()});
+        views.push_back({plane, bound, std::move(layer), part, coversOthers});
+    }
+    /// Adds one behind those before it, wherever they are.
+    void addBehind(const PlaneView& plane, const ErrorBound& bound, Layer layer) {
+        add(plane, bound, std::move(layer), whole(), !views.empty());
     }
 
     Camera camera;

@@ -135,7 +135,8 @@ Picture SlabFiles::fold(const Listener& listener) {
             part->file.mergeNext(box, merged);
             listener.report(double(++slab) / picture->stats.slabs);
         }
-        picture->add(PlaneView(header.layout.camera, view.place), view.bound, std::move(merged));
+        picture->addBehind(PlaneView(header.layout.camera, view.place), view.bound,
+                           std::move(merged));
     }
     for (; part != parts.end(); ++part) part->file.finish();
     return Picture(std::move(picture));

@@ -175,7 +175,7 @@ Picture SlabPicture::fold(std::span<const SlabLayer> layers) const {
                                y);
             }
         }
-        folded->add(view.plane(), view.errorBound(), std::move(merged));
+        folded->addBehind(view.plane(), view.errorBound(), std::move(merged));
     }
     return Picture(std::move(folded));
 }
