@@ -9,8 +9,8 @@
 
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
-#include "files/descriptor.h"
-#include "files/output_target.h"
+#include "files/file_bytes.h"
+#include "files/temporary_file.h"
 #include "formats/input_files.h"
 #include "process/interrupt.h"
 #include "process/run_log.h"

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 namespace deltasplat {
@@ -29,5 +30,15 @@ void requireClaimedMemory(const std::string& what, double bytes);
 /// Its heap then grows in large steps. Without that, glibc asks the system for every 4 KiB in all
 /// threads but the first, and all threads wait for memory meanwhile.
 void expectPieces(std::size_t bytes);
+
+/// Returns the bytes of memory that the cgroups of this process leave it: the least of all limits,
+/// less the memory in use there. Page cache does not count, because it makes room by itself. Reads
+/// both versions of cgroups, wherever they are mounted. Without a limit: the largest number.
+/// @param root  "/", or a test's folder with the same files
+std::uint64_t cgroupAvailable(const std::filesystem::path& root);
+
+/// Returns the number of processors whose time these cgroups leave the process, rounded up. Without
+/// a limit: the largest number.
+int cgroupProcessors(const std::filesystem::path& root);
 
 }  // namespace deltasplat

@@ -15,8 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/cgroup.h"
-#include "base/default_floats.h"
+#include "base/memory.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cfenv>
 #include <cstddef>
 #include <functional>
 
@@ -18,5 +19,22 @@ void parallelForChunks(std::size_t count,
 /// Calls body. While this thread waits for other threads in it, the thread takes on no other work,
 /// so that a lock may be held meanwhile.
 void isolated(const std::function<void()>& body);
+
+/// While an object lives, its thread rounds to nearest, keeps denormals and traps nothing, whatever
+/// the caller has set; the caller's state comes back at the end. Every function of the library that
+/// makes numbers for pixels or files holds one, and so does every piece of parallel work.
+class DefaultFloats {
+  public:
+    DefaultFloats() {
+        std::fegetenv(&callers_);
+        std::fesetenv(FE_DFL_ENV);
+    }
+    ~DefaultFloats() { std::fesetenv(&callers_); }
+    DefaultFloats(const DefaultFloats&) = delete;
+    DefaultFloats& operator=(const DefaultFloats&) = delete;
+
+  private:
+    std::fenv_t callers_;
+};
 
 }  // namespace deltasplat

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cstddef>
 #include <cstdint>
 #include <glm/fwd.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -72,5 +74,13 @@ inline std::string afterStop(const std::string& suggestion) {
 /// Returns "a, b, c" for a readable line: of many names the first few, and the number of the
 /// others.
 std::string nameList(const std::vector<std::string>& names);
+
+/// Returns the name of an enumerator; of what is none, the first one's.
+/// @param names  in the order of the enumerators, which count from 0 on
+template <typename Enum>
+std::string enumName(Enum value, std::initializer_list<const char*> names) {
+    const auto place = static_cast<std::size_t>(value);
+    return names.begin()[place < names.size() ? place : 0];
+}
 
 }  // namespace deltasplat

@@ -14,7 +14,6 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "composite/compositor.h"
-#include "composite/perspective_compositor.h"
 #include "deltasplat/threads.h"
 
 namespace deltasplat {

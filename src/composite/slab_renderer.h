@@ -11,7 +11,6 @@
 #include "base/kept_memory.h"
 #include "base/progress.h"
 #include "composite/layer.h"
-#include "composite/slab_cover.h"
 #include "splat/splatter.h"
 #include "view/base_plane.h"
 

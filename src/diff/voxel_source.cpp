@@ -13,7 +13,7 @@
 
 #include "deltasplat/error.h"
 #include "formats/vdb/grid_metadata.h"
-#include "formats/vdb/packed_grid.h"
+#include "formats/vdb/vdb_leaves.h"
 #include "volume/code_math.h"
 #include "volume/code_tree.h"
 #include "volume/grid_values.h"

@@ -12,8 +12,7 @@
 #include <utility>
 
 #include "deltasplat/error.h"
-#include "files/descriptor.h"
-#include "files/output_target.h"
+#include "files/file_bytes.h"
 #include "files/temporary_file.h"
 
 namespace deltasplat {

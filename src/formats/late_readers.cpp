@@ -2,7 +2,7 @@
 // Functions that a module does, and nothing besides.
 #include <utility>
 
-#include "formats/cameras/readers.h"
+#include "formats/cameras/motion.h"
 #include "formats/dicom/dicom_sniff.h"
 #include "formats/readers.h"
 #include "modules/image_module.h"

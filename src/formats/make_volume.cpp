@@ -7,13 +7,12 @@
 #include <type_traits>
 #include <vector>
 
-#include "base/default_floats.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "formats/dense/dense_source.h"
 #include "formats/readers.h"
-#include "volume/length_unit.h"
 #include "volume/placement.h"
 #include "volume/value_cast.h"
 

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "base/default_floats.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"

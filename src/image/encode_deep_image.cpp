@@ -18,9 +18,7 @@
 #include "deltasplat/image/deep_image.h"
 #include "image/encode_exr.h"
 #include "image/exr_header.h"
-#include "image/exr_stream.h"
 #include "image/quantize.h"
-#include "image/seen_box.h"
 
 namespace deltasplat {
 namespace {

@@ -10,7 +10,6 @@
 
 #include "base/bits.h"
 #include "base/text.h"
-#include "volume/length_unit.h"
 #include "volume/placement.h"
 
 namespace deltasplat {

@@ -7,13 +7,17 @@
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 #include <mutex>
 #include <optional>
+#include <vector>
 
+#include "base/parallel.h"
 #include "base/refuse.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
@@ -145,6 +149,80 @@ ExrThreads::ExrThreads() {
 ExrThreads::~ExrThreads() {
     const std::lock_guard lock(writersMutex);
     --writers;
+}
+
+void ExrMemoryStream::write(const char text[], int size) {
+    const std::uint64_t end = at_ + std::uint64_t(size);
+    if (at_ == bytes_.size()) {
+        bytes_.append(text, std::size_t(size));
+    } else {
+        if (end > bytes_.size()) bytes_.resize(end);
+        std::copy(text, text + size, bytes_.begin() + std::ptrdiff_t(at_));
+    }
+    at_ = end;
+}
+
+void ExrFileStream::write(const char text[], int size) {
+    int left = problem_ == 0 ? size : 0;
+    for (std::uint64_t to = at_; left > 0;) {
+        const ssize_t count = ::pwrite(descriptor_, text, std::size_t(left), off_t(to));
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) {
+            problem_ = count < 0 ? errno : ENOSPC;
+            break;
+        }
+        text += count;
+        to += std::uint64_t(count);
+        left -= int(count);
+    }
+    at_ += std::uint64_t(size);
+}
+
+namespace {
+
+template <typename IsSeen>
+PixelBox boxOfPixels(const PixelBox& within, const IsSeen& isSeen) {
+    std::vector<glm::ivec2> spans(std::size_t(within.size().y), glm::ivec2(0));
+    parallelFor(spans.size(), [&](std::size_t row) {
+        const int y = within.min.y + int(row);
+        int first = within.min.x;
+        while (first < within.max.x && !isSeen(first, y)) ++first;
+        int last = within.max.x;
+        while (last > first && !isSeen(last - 1, y)) --last;
+        spans[row] = {first, last};
+    });
+    return boxOfRows(within.min.y, spans);
+}
+
+}  // namespace
+
+PixelBox boxOfRows(int first, std::span<const glm::ivec2> spans) {
+    PixelBox box;
+    for (std::size_t i = 0; i < spans.size(); ++i) {
+        if (spans[i].x >= spans[i].y) continue;
+        const int y = first + int(i);
+        const PixelBox row{{spans[i].x, y}, {spans[i].y, y + 1}};
+        box = box.empty() ? row
+                          : PixelBox{{std::min(box.min.x, row.min.x), box.min.y},
+                                     {std::max(box.max.x, row.max.x), row.max.y}};
+    }
+    return box;
+}
+
+PixelBox seenBox(const Image& image, const PixelBox& within,
+                 std::span<const ImageChannel> channels) {
+    return boxOfPixels(within, [&](int x, int y) {
+        const float* rgba = image.pixel(x, y);
+        const std::size_t i = std::size_t(rgba - image.rgba.data()) / 4;
+        return std::any_of(rgba, rgba + 4, [](float value) { return value != 0; }) ||
+               std::any_of(channels.begin(), channels.end(), [&](const ImageChannel& channel) {
+                   return channel.values[i] != channel.nothing;
+               });
+    });
+}
+
+PixelBox seenBox(const DeepImage& image, const PixelBox& within) {
+    return boxOfPixels(within, [&](int x, int y) { return !image.pixel(x, y).empty(); });
 }
 
 }  // namespace deltasplat

@@ -4,8 +4,8 @@
 #include <limits>
 #include <string>
 
-#include "base/default_floats.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"

@@ -15,7 +15,6 @@
 #include <queue>
 #include <string>
 
-#include "base/default_floats.h"
 #include "base/parallel.h"
 #include "base/portable_math.h"
 #include "base/refuse.h"

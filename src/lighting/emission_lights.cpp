@@ -19,12 +19,10 @@
 #include <string>
 #include <utility>
 
-#include "base/default_floats.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "image/srgb.h"
-#include "lighting/part_looks.h"
 #include "lighting/part_sampler.h"
 
 namespace deltasplat {

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "base/portable_math.h"
-#include "lighting/part_looks.h"
 #include "lighting/part_sampler.h"
 #include "optics/color_space.h"
 #include "optics/voxel_painter.h"

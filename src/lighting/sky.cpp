@@ -20,13 +20,14 @@
 #include <string>
 
 #include "base/affine.h"
-#include "base/default_floats.h"
 #include "base/parallel.h"
 #include "base/portable_math.h"
 #include "base/refuse.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
+#include "deltasplat/optics/environment.h"
 #include "deltasplat/optics/sky.h"
+#include "modules/image_module.h"
 #include "optics/color_space.h"
 #include "view/picture_rays.h"
 
@@ -294,6 +295,11 @@ glm::dvec3 colorUnderSun(const glm::dvec3& xyz) {
 
 glm::dvec3 sunColor(double zenithAngle, double turbidity) {
     return colorUnderSun(sunXyz(airMass(zenithAngle), turbidity) / aboveAir().y);
+}
+
+// Functions that a module does, and nothing besides.
+Environment readEnvironment(const std::filesystem::path& file, const Listener& listener) {
+    return imageModule().readEnvironment(file, listener);
 }
 
 }  // namespace deltasplat

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "files/descriptor.h"
+#include "files/file_bytes.h"
 
 namespace deltasplat {
 

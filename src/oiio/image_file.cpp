@@ -2,29 +2,238 @@
 #include "oiio/image_file.h"
 
 #include <OpenImageIO/filesystem.h>
+#include <zlib.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "base/cleared_memory.h"
+#include "base/memory.h"
 #include "base/silent_stderr.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "files/file_bytes.h"
 #include "files/file_name.h"
 #include "formats/images/image_claims.h"
-#include "formats/images/stored_numbers.h"
 #include "formats/input_kind.h"
-#include "oiio/exr_threads.h"
-#include "oiio/pgm_samples.h"
 
 namespace deltasplat {
+
 namespace {
+
+/// Whether a file is a grey Netpbm image, plain (P2) or binary (P5). OpenImageIO 2.4 stretches such
+/// samples over the type's range, and rounds half of those of 16 bits down by one.
+bool isPgm(const std::filesystem::path& file);
+
+/// Reads the samples of one as they are stored, whatever its largest is; files with several images
+/// have but the first. To numbers of one byte if the file says that none is above 255, else of two.
+/// @param to  as many as the image has pixels
+/// @throw Error(kInput) unless it has `pixels` whole samples, none above what it says
+void readPgm(const std::filesystem::path& file, std::size_t pixels, std::span<std::byte> to);
+
+// Based on: Netpbm's description of its pgm format.
+constexpr std::uint32_t kMost = 65535;
+
+// Takes numbers from the front of a file's bytes.
+class Numbers {
+  public:
+    Numbers(const std::filesystem::path& file, const std::vector<unsigned char>& bytes)
+        : file_(file), bytes_(bytes) {}
+
+    // What stands between numbers is passed over, comments too.
+    std::uint32_t next() {
+        while (place_ < bytes_.size() && !std::isdigit(bytes_[place_])) {
+            const unsigned char byte = bytes_[place_++];
+            if (byte == '#') {
+                while (place_ < bytes_.size() && bytes_[place_] != '\n') ++place_;
+            } else if (!std::isspace(byte)) {
+                refuseFile(file_, "a byte " + std::to_string(byte) + " where a number should be",
+                           "a whole .pgm image");
+            }
+        }
+        if (place_ == bytes_.size())
+            refuseFile(file_, "a file that is cut short", "a whole .pgm image");
+        std::uint64_t number = 0;
+        for (; place_ < bytes_.size() && std::isdigit(bytes_[place_]); ++place_) {
+            number = 10 * number + (bytes_[place_] - '0');
+            if (number > 0xffffffff) refuseFile(file_, "a number of many digits", "a .pgm image");
+        }
+        return std::uint32_t(number);
+    }
+    // The raster of a binary image begins behind one byte.
+    std::size_t place() const { return place_; }
+    void skip(std::size_t bytes) { place_ += bytes; }
+
+  private:
+    const std::filesystem::path& file_;
+    const std::vector<unsigned char>& bytes_;
+    std::size_t place_ = 0;
+};
+
+void put(std::uint32_t sample, std::size_t width, std::byte* to) {
+    const auto small = std::uint8_t(sample);
+    const auto large = std::uint16_t(sample);
+    std::memcpy(to, width == 1 ? static_cast<const void*>(&small) : &large, width);
+}
+
+bool isPgm(const std::filesystem::path& file) {
+    char magic[2];
+    const FileBytes bytes(file);
+    return bytes.read(0, magic, 2) == 2 && magic[0] == 'P' && (magic[1] == '2' || magic[1] == '5');
+}
+
+void readPgm(const std::filesystem::path& file, std::size_t pixels, std::span<std::byte> to) {
+    const FileBytes source(file);
+    const auto read = [&](std::uint64_t place, std::uint64_t size) {
+        requireClaimedMemory(file.string(), double(size));
+        std::vector<unsigned char> bytes(size);
+        bytes.resize(source.read(place, bytes.data(), bytes.size()));
+        return bytes;
+    };
+    // Comments aside, a header has some twenty bytes.
+    constexpr std::uint64_t kMostHeader = std::uint64_t{1} << 16;
+    std::vector<unsigned char> bytes = read(0, std::min(kMostHeader, source.size()));
+    const bool isBinary = bytes.size() > 1 && bytes[1] == '5';
+    if (!isBinary) bytes = read(0, source.size());
+    Numbers numbers(file, bytes);
+    numbers.skip(2);
+    const std::uint64_t size = std::uint64_t{numbers.next()} * numbers.next();
+    const std::uint32_t most = numbers.next();
+    if (size != pixels) refuseFile(file, std::to_string(size) + " pixels", std::to_string(pixels));
+    if (most < 1 || most > kMost) {
+        refuseFile(file, "samples up to " + std::to_string(most),
+                   "at most " + std::to_string(kMost) + ", at least 1");
+    }
+    const std::size_t width = most < 256 ? 1 : 2;
+    if (to.size() != pixels * width) {
+        refuseFile(file, std::to_string(width) + " bytes a sample",
+                   std::to_string(to.size() / pixels));
+    }
+    std::vector<unsigned char> raster;
+    if (isBinary) {
+        raster = read(numbers.place() + 1, pixels * width);
+        if (raster.size() < pixels * width)
+            refuseFile(file, "a file that is cut short", "a whole .pgm image");
+    }
+    const unsigned char* next = raster.data();
+    for (std::size_t i = 0; i < pixels; ++i) {
+        std::uint32_t sample = 0;
+        if (!isBinary) {
+            sample = numbers.next();
+        } else {
+            for (std::size_t n = 0; n < width; ++n) sample = sample << 8 | *next++;
+        }
+        if (sample > most) {
+            refuseFile(file, "a sample of " + std::to_string(sample),
+                       "at most " + std::to_string(most) + ", as its header says");
+        }
+        put(sample, width, to.data() + i * width);
+    }
+}
+
+/// What the header of a .png or .bmp says of its numbers.
+struct StoredNumbers {
+    int bits = 8;            ///< of a number: 1, 2, 4, 8 or 16; of a .bmp as it is read
+    bool isPalette = false;  ///< whether they are those of a palette's colours
+    /// Of a palette: what stands at which places of a file whose numbers are greys.
+    std::vector<std::pair<std::uint64_t, std::string>> asGreys;
+};
+
+/// Returns nothing for what has another extension, or no such header.
+std::optional<StoredNumbers> storedNumbers(const std::filesystem::path& file);
+
+// Based on: the PNG specification (W3C, third edition), sections 5 and 11; Microsoft's
+// BITMAPINFOHEADER.
+std::string read(const FileBytes& file, std::uint64_t place, std::size_t bytes) {
+    std::string text(bytes, '\0');
+    text.resize(file.read(place, text.data(), bytes));
+    return text;
+}
+
+std::uint32_t numberAt(const std::string& bytes, std::size_t at, int width, bool bigEndian) {
+    std::uint32_t value = 0;
+    for (int i = 0; i < width; ++i) {
+        const int digit = bigEndian ? i : width - 1 - i;
+        value = value << 8 | static_cast<unsigned char>(bytes[at + std::size_t(digit)]);
+    }
+    return value;
+}
+
+constexpr std::size_t kPngHeader = 13, kChecksum = 4;  // bytes
+constexpr std::uint64_t kPngPlace = 16;                // of the header
+
+// The header and its checksum as those of greys, and what is known of colours, which stands before
+// the pixels, as what may be passed over.
+void addPngGreys(const FileBytes& file, std::string header, std::size_t colorType,
+                 StoredNumbers& numbers) {
+    header[colorType] = 0;
+    const std::string summed = "IHDR" + header;
+    const auto sum =
+        std::uint32_t(crc32(0, reinterpret_cast<const Bytef*>(summed.data()), uInt(summed.size())));
+    for (int shift = 24; shift >= 0; shift -= 8) header += char((sum >> shift) & 0xff);
+    numbers.asGreys.emplace_back(kPngPlace, header);
+    std::uint64_t place = kPngPlace + kPngHeader + kChecksum;
+    // Each stands at most once in a file.
+    bool colors = false, opacities = false;
+    while (true) {
+        const std::string head = read(file, place, 8);
+        if (head.size() < 8 || head.ends_with("IDAT")) return;
+        if ((head.ends_with("PLTE") && !std::exchange(colors, true)) ||
+            (head.ends_with("tRNS") && !std::exchange(opacities, true)))
+            numbers.asGreys.emplace_back(place + 4, "xxXx");
+        place += 8 + std::uint64_t{numberAt(head, 0, 4, true)} + kChecksum;
+    }
+}
+
+std::optional<StoredNumbers> numbersOfPng(const FileBytes& file) {
+    constexpr std::size_t kBits = 8, kColorType = 9;
+    const std::string bytes = read(file, 0, kPngPlace + kPngHeader);
+    if (bytes.size() < kPngPlace + kPngHeader || !bytes.starts_with("\x89PNG")) return {};
+    const std::string header = bytes.substr(kPngPlace);
+    StoredNumbers numbers;
+    numbers.bits = static_cast<unsigned char>(header[kBits]);
+    numbers.isPalette = header[kColorType] == 3;
+    if (numbers.isPalette) addPngGreys(file, header, kColorType, numbers);
+    return numbers;
+}
+
+// The table of colours as one of greys.
+std::optional<StoredNumbers> numbersOfBmp(const FileBytes& file) {
+    constexpr std::size_t kSize = 14, kBits = 28, kColors = 46;
+    constexpr std::size_t kOldHeader = 12;
+    const std::string head = read(file, 0, 54);
+    if (head.size() < 54 || !head.starts_with("BM")) return {};
+    const std::size_t headerBytes = numberAt(head, kSize, 4, false);
+    const bool isOld = headerBytes == kOldHeader;
+    const std::uint32_t bits = numberAt(head, isOld ? 24 : kBits, 2, false);
+    StoredNumbers numbers;
+    numbers.isPalette = bits >= 1 && bits <= 8;
+    if (!numbers.isPalette) return numbers;
+    const std::uint32_t all = 1U << bits;
+    const std::uint32_t used = isOld ? 0 : numberAt(head, kColors, 4, false);
+    std::string greys;
+    for (std::uint32_t i = 0; i < (used > 0 ? std::min(used, all) : all); ++i)
+        greys += std::string(3, char(i)) + (isOld ? "" : std::string(1, '\0'));
+    numbers.asGreys.emplace_back(kSize + headerBytes, greys);
+    return numbers;
+}
+
+std::optional<StoredNumbers> storedNumbers(const std::filesystem::path& path) {
+    const std::string extension = lowerExtension(path);
+    if (extension == ".png") return numbersOfPng(FileBytes(path));
+    if (extension == ".bmp") return numbersOfBmp(FileBytes(path));
+    return {};
+}
 
 using OIIO::ImageInput;
 using OIIO::ImageSpec;

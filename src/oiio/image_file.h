@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "deltasplat/threads.h"
 #include "formats/images/tiff_pages.h"
 
 namespace deltasplat {
@@ -86,5 +87,14 @@ class ImageFile {
     bool isInverted_ = false;  // by OpenImageIO
     int bits_ = 0;             // of a number as it is stored, if OpenImageIO stretches it; else 0
 };
+
+/// Makes OpenEXR use as many threads as the library where OpenImageIO reads with it, which would
+/// start as many as there are cores. For who writes with it there is ExrThreads
+/// (src/image/exr_header.h).
+/// @param mayThread  whether there may be several at all: each has memory of its own
+inline void limitExrThreads(bool mayThread) {
+    constexpr int kNone = -1;  // but the caller
+    OIIO::attribute("exr_threads", mayThread && threadCount() > 1 ? threadCount() : kNone);
+}
 
 }  // namespace deltasplat

@@ -19,7 +19,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
-#include "volume/length_unit.h"
+#include "volume/placement.h"
 
 namespace deltasplat {
 namespace {

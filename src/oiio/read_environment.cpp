@@ -7,7 +7,6 @@
 #include <cmath>
 #include <string>
 
-#include "base/default_floats.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "deltasplat/error.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/thumbnail.h"
 
 #include <OpenImageIO/deepdata.h>
 #include <OpenImageIO/imageio.h>
@@ -11,7 +10,7 @@
 #include <exception>
 #include <vector>
 
-#include "base/default_floats.h"
+#include "base/parallel.h"
 #include "base/silent_stderr.h"
 #include "deltasplat/error.h"
 #include "formats/images/image_claims.h"
@@ -19,7 +18,6 @@
 #include "image/srgb.h"
 #include "modules/image_module.h"
 #include "oiio/encode_image.h"
-#include "oiio/exr_threads.h"
 #include "oiio/image_file.h"
 
 namespace deltasplat {

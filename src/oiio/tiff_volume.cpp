@@ -14,9 +14,9 @@
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "files/file_name.h"
-#include "formats/choose_volume.h"
+#include "formats/input_files.h"
 #include "oiio/ome_planes.h"
-#include "volume/length_unit.h"
+#include "volume/placement.h"
 
 namespace deltasplat {
 namespace {

@@ -18,14 +18,12 @@
 #include <utility>
 
 #include "base/affine.h"
-#include "base/default_floats.h"
 #include "base/parallel.h"
 #include "base/portable_math.h"
 #include "base/text.h"
 #include "base/uncleared.h"
 #include "deltasplat/error.h"
 #include "optics/check_optics.h"
-#include "optics/class_numbers.h"
 #include "optics/color_curve.h"
 #include "optics/color_digits.h"
 

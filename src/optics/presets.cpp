@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/default_floats.h"
+#include "base/parallel.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/default_ramp.h"
 #include "deltasplat/optics/presets.h"

@@ -3,10 +3,12 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 #include "deltasplat/optics/class_table.h"
 #include "optics/color_curve.h"
+#include "optics/voxel_painter.h"
 
 namespace deltasplat {
 
@@ -30,5 +32,14 @@ class ValueColors {
     double low_ = 0;   // data value of the function's 0
     double unit_ = 1;  // and how many its 1 is more
 };
+
+/// Returns a volume's values as gradients are taken of them: how far they are from one of them, in
+/// units of the change that is half noise, half surface.
+/// @param noise  that change; empty: gradientNoise
+GradientScale scaledValues(const Volume& volume, double zero,
+                           const std::optional<double>& noise = std::nullopt);
+
+/// Returns a hundredth of where most values lie (bulkRange), or of where all do.
+double gradientNoise(const Volume& volume);
 
 }  // namespace deltasplat

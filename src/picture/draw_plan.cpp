@@ -16,7 +16,6 @@
 #include "deltasplat/error.h"
 #include "view/base_plane.h"
 #include "view/factorization.h"
-#include "view/joined_slants.h"
 #include "volume/placement.h"
 #include "words/packed_deltas.h"
 

@@ -20,7 +20,7 @@
 #include "base/text.h"
 #include "deltasplat/ingest/slot.h"
 #include "optics/voxel_painter.h"
-#include "view/seen_box.h"
+#include "view/picture_rays.h"
 #include "volume/code_blocks.h"
 #include "volume/code_tree.h"
 #include "volume/slot_blocks.h"

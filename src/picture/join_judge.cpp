@@ -12,7 +12,7 @@
 #include "picture/draw_plan.h"
 #include "view/factorization.h"
 #include "volume/code_blocks.h"
-#include "words/joined_classes.h"
+#include "words/joined_tiles.h"
 
 namespace deltasplat {
 namespace {

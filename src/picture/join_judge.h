@@ -10,7 +10,7 @@
 #include "deltasplat/optics/class_table.h"
 #include "deltasplat/prepared_scene.h"
 #include "deltasplat/view/factorization.h"
-#include "view/joined_slants.h"
+#include "view/base_plane.h"
 #include "words/join_probe.h"
 
 namespace deltasplat {

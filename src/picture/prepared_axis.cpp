@@ -10,18 +10,17 @@
 #include <vector>
 
 #include "base/affine.h"
-#include "base/default_floats.h"
 #include "base/parallel.h"
 #include "base/portable_math.h"
 #include "deltasplat/error.h"
-#include "lighting/part_looks.h"
-#include "optics/class_numbers.h"
+#include "lighting/part_sampler.h"
+#include "optics/color_digits.h"
 #include "optics/hold_rule.h"
 #include "picture/draw_plan.h"
-#include "volume/box_voxels.h"
 #include "volume/code_blocks.h"
+#include "volume/code_math.h"
 #include "volume/seen_cone.h"
-#include "words/joined_classes.h"
+#include "words/joined_tiles.h"
 #include "words/value_mixer.h"
 
 namespace deltasplat {

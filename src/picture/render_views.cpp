@@ -4,19 +4,26 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "base/default_floats.h"
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "base/progress.h"
 #include "base/text.h"
-#include "picture/empty_picture.h"
+#include "deltasplat/error.h"
+#include "deltasplat/optics/presets.h"
+#include "deltasplat/render.h"
 #include "picture/far_groups.h"
+#include "picture/rays/ray_render.h"
 #include "screen/clear_image.h"
-#include "volume/box_voxels.h"
+#include "volume/code_math.h"
 
 namespace deltasplat {
+
 namespace {
 
 // Opacity and light that nobody sees: an opacity of 8 bits would be 0.
@@ -179,6 +186,68 @@ bool isAnyBeyond(std::span<const float> values, float least) {
     // Most pictures show something in the middle.
     const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
     return std::any_of(middle, values.end(), isSeen) || std::any_of(values.begin(), middle, isSeen);
+}
+
+namespace {
+
+// The picture itself, and what encoding it takes besides (measured: 41 bytes for a float .exr).
+constexpr double kBytesPerPixel = 48;
+
+void requireImageMemory(glm::ivec2 size) {
+    requireMemory("`sizePixels` " + dimsText(size), kBytesPerPixel * size.x * size.y);
+}
+
+}  // namespace
+
+std::string methodName(Method method) {
+    return enumName(method, {"auto", "delta", "sparse", "traditional"});
+}
+
+std::string pictureFilterName(PictureFilter filter) {
+    return enumName(filter, {"catmull-rom", "mitchell", "gauss", "box"});
+}
+
+std::string modeName(Mode mode) {
+    return enumName(mode, {"composite", "xray", "mip", "min", "average", "drr"});
+}
+
+RenderResult render(const Volume& volume, const RenderOptions& options, const Listener& listener) {
+    const DefaultFloats floats;
+    RenderResult result;
+    const auto makePicture = [&](const Volume& seen) {
+        result.camera = makeCamera(options.camera, seen);
+        requireImageMemory(result.camera.sizePixels);
+        result.image = clearImage(result.camera.sizePixels);
+    };
+    RenderStats& stats = result.stats;
+    stats.voxels = voxelsOf(volume.box);
+    stats.mode = options.mode;
+    stats.method = options.splat.method;
+    if (options.mode == Mode::kComposite) {
+        // A camera that cannot be is refused before there is work.
+        if (options.optics.parts.empty()) makePicture(volume);
+        // The volume outlives the scene.
+        const std::shared_ptr<const Volume> borrowed(std::shared_ptr<const Volume>(), &volume);
+        const Clock::time_point start = Clock::now();
+        const PreparedScene::Impl scene({borrowed, options.optics}, options.splat, true);
+        const double sceneSeconds = secondsSince(start);
+        if (!options.optics.parts.empty()) makePicture(*scene.scene.volume);
+        KeptMemory memory;
+        stats = renderImage(scene, result.camera, memory, result.image, listener);
+        stats.prepareSeconds += sceneSeconds;
+    } else {
+        makePicture(volume);
+        renderRays(volume, options, listener, result);
+    }
+    listener.report(1);
+    return result;
+}
+
+RenderResult render(const Volume& volume, const Listener& listener) {
+    RenderOptions options;
+    options.optics = defaultOptics(volume);
+    options.splat.mostJoined = kMostJoined;
+    return render(volume, options, listener);
 }
 
 }  // namespace deltasplat

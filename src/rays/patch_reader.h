@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
+#include "rays/picture_lines.h"
 #include "rays/ray_kernels.h"
 #include "rays/ray_volume.h"
-#include "rays/sight_ray.h"
 
 namespace deltasplat {
 

@@ -6,9 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "rays/line_group.h"
 #include "rays/patch_reader.h"
-#include "rays/sight_ray.h"
+#include "rays/picture_lines.h"
 
 namespace deltasplat {
 

@@ -9,8 +9,8 @@
 
 #include "base/bits.h"
 #include "base/parallel.h"
-#include "formats/delta/block_windows.h"
-#include "formats/delta/delta_origin.h"
+#include "formats/delta/delta_format.h"
+#include "formats/delta/delta_grid.h"
 #include "volume/leaf_slices.h"
 #include "volume/tree_grid.h"
 

@@ -14,8 +14,8 @@
 #include "base/portable_math.h"
 #include "screen/clear_image.h"
 #include "screen/halved_raster.h"
-#include "screen/raster_reader.h"
 #include "screen/warp_kernels.h"
+#include "screen/warp_region.h"
 
 namespace deltasplat {
 namespace {

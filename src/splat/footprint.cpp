@@ -10,7 +10,7 @@
 #include <numeric>
 #include <string>
 
-#include "base/default_floats.h"
+#include "base/parallel.h"
 #include "base/portable_math.h"
 #include "base/text.h"
 #include "deltasplat/error.h"

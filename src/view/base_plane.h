@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory_resource>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "deltasplat/ingest/volume.h"
+#include "deltasplat/view/camera.h"
 #include "deltasplat/view/factorization.h"
+#include "view/picture_rays.h"
 
 namespace deltasplat {
 
@@ -116,6 +121,60 @@ struct StepLengths {
         const glm::ivec2 p = pixel - box.min;
         return &values[std::size_t(p.y) * std::size_t(box.size().x) + std::size_t(p.x)];
     }
+};
+
+/// What becomes one.
+struct JoinedVoxels {
+    int slices = 1;
+    int within = 1;  ///< as Subdivision::joinedWithin
+};
+
+/// How slices are moved that become one, and by how much that moves them.
+struct JoinedSlants {
+    std::array<glm::ivec2, kMostJoined> slants{};  ///< as Subdivision has them
+    /// How far what is joined lies from where it is drawn, in voxels: at most.
+    double farthest = 0;
+    /// Whether what is thin, and seen nearly edge-on, stays as dense as it is: along u and along v,
+    /// lines of sight go on by what becomes one within these slices, or hardly at all.
+    bool keepsDensity = true;
+};
+
+/// Returns the slants by which slices stay nearest to their places.
+/// @param shiftPerSlice  -1 to 1 each
+/// @param count          a power of two, kMostJoined at most
+/// @param within         as Subdivision::joinedWithin
+JoinedSlants joinedSlants(const glm::dvec2& shiftPerSlice, int count, int within = 1);
+
+/// Returns where joined voxels are drawn, counted from the first of them: in the middle between the
+/// outermost places of all.
+/// @param slants  as Subdivision::joinedSlants
+glm::dvec2 middleOfJoined(const glm::dvec2& shiftPerSlice, std::span<const glm::ivec2> slants);
+
+/// How deep a line of sight, which crosses all slices, lies at a position along the slice axis.
+struct DepthLine {
+    double first = 0;  ///< at position 0
+    double perSlice = 0;
+
+    double at(double slice) const { return first + perSlice * slice; }
+};
+
+/// How deep slices lie in a picture, pixel by pixel: along the camera's line of sight as OpenEXR's
+/// worldToCamera has it, of kLatlong along each pixel's, in world units.
+class SliceDepths {
+  public:
+    /// @param worldFromSlices  from (slice, u, v), counted from anywhere
+    SliceDepths(const Camera& camera, const glm::dmat4& worldFromSlices);
+
+    /// Of the middle of a pixel.
+    DepthLine lineAt(int x, int y) const;
+    /// What is nearer is not seen.
+    double nearest() const { return camera_.nearWorld; }
+
+  private:
+    Camera camera_;
+    glm::dvec3 origin_;  // in the world, position 0 along the axis
+    glm::dvec3 slicesPerWorld_;
+    std::optional<PictureRays> rays_;  // from an eye
 };
 
 }  // namespace deltasplat

@@ -7,7 +7,6 @@
 #include <glm/matrix.hpp>
 #include <numbers>
 
-#include "base/enum_name.h"
 #include "base/portable_math.h"
 #include "base/text.h"
 #include "deltasplat/view/camera.h"

@@ -16,13 +16,13 @@
 #include <string>
 
 #include "base/affine.h"
-#include "base/default_floats.h"
+#include "base/parallel.h"
 #include "base/portable_math.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/slot.h"
 #include "deltasplat/view/factorization.h"
-#include "view/joined_slants.h"
+#include "view/base_plane.h"
 
 namespace deltasplat {
 

@@ -7,7 +7,7 @@
 
 #include "deltasplat/ingest/code_book.h"
 #include "deltasplat/ingest/slot.h"
-#include "volume/class_index.h"
+#include "volume/code_math.h"
 
 namespace deltasplat {
 

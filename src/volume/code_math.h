@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "deltasplat/ingest/code_book.h"
+#include "deltasplat/ingest/volume.h"
 
 namespace deltasplat {
 
@@ -48,6 +50,18 @@ inline std::vector<double> valuesOfCodes(const CodeBook& book) {
     for (int code = 0; code < kCodeCount; ++code)
         values[std::size_t(code)] = book.valueOf(Code(code));
     return values;
+}
+
+/// What a voxel looks like: an index into the colours of a class table; 0 = empty.
+using ClassIndex = std::uint16_t;
+
+/// Returns how many voxels a box has; of boxes that have more than 64 bits hold, 2^63.
+inline std::uint64_t voxelsOf(const IndexBox& box) {
+    const glm::ivec3 d = box.dims();
+    constexpr double kMost = 0x1p63;
+    const double voxels = double(d.x) * double(d.y) * double(d.z);
+    return voxels < kMost ? std::uint64_t(d.x) * std::uint64_t(d.y) * std::uint64_t(d.z)
+                          : std::uint64_t(kMost);
 }
 
 }  // namespace deltasplat

@@ -14,7 +14,6 @@
 #include "volume/cut_region.h"
 #include "volume/grid_values.h"
 #include "volume/keep_voxels.h"
-#include "volume/length_unit.h"
 #include "volume/placement.h"
 #include "volume/tree_grid.h"
 #include "volume/volume_checks.h"

@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "volume/grid_values.h"
-#include "volume/leaf_bytes.h"
+#include "volume/leaf_slices.h"
 
 namespace deltasplat {
 namespace {

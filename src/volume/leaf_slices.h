@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// OpenVDB's 8x8x8 blocks as they lie along a slice axis.
 #pragma once
 
 #include <openvdb/math/Coord.h>
@@ -8,8 +9,6 @@
 
 #include "deltasplat/ingest/slot.h"
 #include "volume/code_tree.h"
-
-// OpenVDB's 8x8x8 blocks as they lie along a slice axis.
 
 namespace deltasplat {
 
@@ -94,6 +93,12 @@ void clearInactiveSlices(const CodeTree::Leaf& leaf, int sliceAxis, Out* out) {
     withLeafSteps(sliceAxis, [&]<int kStepX, int kStepY, int kStepZ>() {
         clearInactive<kStepX, kStepY, kStepZ>(leaf, out);
     });
+}
+
+/// Returns what a leaf of an OpenVDB tree takes, its values included.
+template <typename Leaf>
+constexpr double leafBytes() {
+    return sizeof(Leaf) + Leaf::NUM_VALUES * sizeof(typename Leaf::ValueType);
 }
 
 }  // namespace deltasplat

@@ -8,6 +8,7 @@
 #include <string>
 #include <type_traits>
 
+#include "deltasplat/error.h"
 #include "deltasplat/ingest/volume.h"
 #include "volume/tree_types.h"
 #include "volume/vdb_metadata.h"
@@ -112,5 +113,27 @@ struct SourceGrid {
 inline bool holdsUnsigned(const Volume& volume) {
     return volume.source && volume.type == "uint64" && volume.source->grid.as<openvdb::Int64Tree>();
 }
+
+/// Says that a sound grid holds values that are NaN or infinite.
+struct NotFinite : Error {
+    using Error::Error;
+};
+
+/// Says that a sound grid is of a kind that is not read: which says what is in the way.
+struct UnreadableGrid : Error {
+    /// @param where  file and grid
+    /// @param which  "a NonlinearFrustumMap transform"
+    UnreadableGrid(const std::string& where, const std::string& which, const std::string& expected)
+        : Error(ErrorCode::kInput, where, which, expected), obstacle(which) {}
+
+    std::string obstacle;
+};
+
+/// Says that leaves of a grid cannot be unpacked where they were looked for.
+struct DamagedLeaves : Error {
+    /// @param where  file and grid
+    explicit DamagedLeaves(const std::string& where)
+        : Error(ErrorCode::kInput, where, "leaves that are damaged", "a sound OpenVDB grid") {}
+};
 
 }  // namespace deltasplat

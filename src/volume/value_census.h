@@ -1,25 +1,241 @@
 // SPDX-License-Identifier: Apache-2.0
+// Based on: J. Misra, D. Gries, "Finding repeated elements", 1982; merging after P. Agarwal et al.,
+// "Mergeable summaries", 2012.
 #pragma once
 
 #include <openvdb/Types.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <glm/vec2.hpp>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "deltasplat/ingest/code_book.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "volume/distinct_values.h"
-#include "volume/fitted_book.h"
+#include "deltasplat/ingest/source_values.h"
 #include "volume/float_kernels.h"
-#include "volume/value_survey.h"
 
 namespace deltasplat {
+
+/// Returns where to begin looking for `bits` in an open hash table of `size` places, a power of two
+/// from 2 on.
+inline std::size_t hashPlace(std::uint64_t bits, std::size_t size) {
+    constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // 2^64 over the golden ratio (D. Knuth)
+    // Doubles that are whole numbers have zeros at the end, which multiplication keeps.
+    return std::size_t((bits ^ (bits >> 32)) * kSpread >> (65 - std::bit_width(size)));
+}
+
+/// The different values among many, as long as there are at most kCodeCount of them: told
+/// apart by their bits, so that -0 is not 0.
+class DistinctValues {
+  public:
+    void add(double value) {
+        // Neighbours are often equal.
+        const auto bits = std::bit_cast<std::uint64_t>(value);
+        if (bits != last_) insert(bits);
+    }
+    void append(const DistinctValues& other);
+    /// There are more than kCodeCount.
+    bool tooMany() const { return tooMany_; }
+    /// Stops collecting, as if there were too many.
+    void giveUp();
+    /// Returns the values in increasing order, -0 before 0, NaN last by their bits. Meaningless if
+    /// there are too many.
+    std::vector<double> sorted() const;
+
+  private:
+    static constexpr std::uint64_t kNone = 0x7ff8000000000000;  // stands for an empty place
+    void insert(std::uint64_t bits);
+    void place(std::uint64_t bits);
+    void grow();
+
+    std::vector<std::uint64_t> places_;  // an open hash table, at most half full
+    std::size_t count_ = 0;
+    std::optional<std::uint64_t> last_;
+    bool hasNone_ = false;  // kNone is among the values: the usual NaN
+    bool tooMany_ = false;
+};
+
+/// Finds every value that more than a ninth of many values have, in one pass over them.
+class FrequentValues {
+  public:
+    void add(double value, std::uint64_t count = 1) {
+        // Neighbours are often equal, and most places are taken by what is frequent.
+        for (std::size_t i = 0; i < kPlaces; ++i) {
+            if (places_[i].count > 0 && places_[i].value == value) {
+                places_[i].count += count;
+                return;
+            }
+        }
+        take({value, count});
+    }
+
+    void append(const FrequentValues& other) {
+        std::vector<FrequentValue> all = values();
+        for (const FrequentValue& one : other.values()) {
+            const auto same = std::find_if(all.begin(), all.end(), [&](const FrequentValue& place) {
+                return place.value == one.value;
+            });
+            same != all.end() ? void(same->count += one.count) : all.push_back(one);
+        }
+        const auto fewer = [](const FrequentValue& a, const FrequentValue& b) {
+            return a.count != b.count ? a.count > b.count : a.value < b.value;
+        };
+        std::sort(all.begin(), all.end(), fewer);
+        const std::uint64_t lost = all.size() > kPlaces ? all[kPlaces].count : 0;
+        places_ = {};
+        for (std::size_t i = 0; i < std::min(kPlaces, all.size()); ++i)
+            places_[i] = {all[i].value, all[i].count - lost};
+    }
+
+    /// Returns what was found, and may be more: with counts that are at most the true ones.
+    std::vector<FrequentValue> values() const {
+        std::vector<FrequentValue> found;
+        for (const FrequentValue& place : places_) {
+            if (place.count > 0) found.push_back(place);
+        }
+        return found;
+    }
+
+  private:
+    static constexpr std::size_t kPlaces = 8;
+
+    void take(const FrequentValue& one) {
+        for (FrequentValue& place : places_) {
+            if (place.count > 0) continue;
+            place = one;
+            return;
+        }
+        std::uint64_t least = one.count;
+        for (const FrequentValue& place : places_) least = std::min(least, place.count);
+        for (FrequentValue& place : places_) place.count -= least;
+        if (one.count > least) take({one.value, one.count - least});
+    }
+
+    std::array<FrequentValue, kPlaces> places_{};
+};
+
+/// Values that lie close together: all 0, or of one sign and within an eighth of an octave.
+struct ValueCell {
+    double low = 0;   ///< the smallest value
+    double high = 0;  ///< the largest value
+    std::uint64_t count = 0;
+};
+
+/// How exactly a fitted book is to keep values: each within kRelativeNeed of its magnitude, and
+/// values of the bulk within kBulkNeed of its width as well.
+inline constexpr double kRelativeNeed = 2e-4;
+inline constexpr double kBulkNeed = 0x1p-16;
+
+/// Returns the bulk of the values: from the cell of their 1st to that of their 99th percentile,
+/// those that are 0 and the frequent ones left out. Outliers do not move it.
+/// @param frequent  with counts that are at most the true ones
+glm::dvec2 bulkOf(const std::vector<ValueCell>& cells, const std::vector<FrequentValue>& frequent);
+
+/// Fits a book to where values lie: codes go only there. All is asked of every value, but for those
+/// next to 0, whose share of themselves is next to nothing; they are allowed an error that is as
+/// small as 65536 codes allow. If codes are left over, all errors are made smaller alike; if they
+/// do not suffice, some needs are given up, one after the other and each only as far as it takes:
+///   1. the hundredth of the values that is nearest to 0 is off by more than kRelativeNeed;
+///   2. the bulk is kept no better than other values;
+///   3. the tenth of the values that is nearest to 0 is off by more than a thousandth of itself;
+///   4. every value is off by up to a thousandth of itself;
+///   5. values are off by kBulkNeed of the bulk's width;
+///   6. every value is off by a larger share.
+/// @param cells     at least one
+/// @param frequent  values that are to have a code to themselves; those outside of all cells none
+/// @param kind      what the values of codes are to be
+CodeBook fitBook(const std::vector<ValueCell>& cells, const std::vector<FrequentValue>& frequent,
+                 CodeBook::Values kind);
+
+// What numbers of a kind there are.
+
+/// Returns the largest number.
+inline double largestOf(CodeBook::Values kind) {
+    return kind == CodeBook::Values::kFloat ? double(std::numeric_limits<float>::max())
+                                            : std::numeric_limits<double>::max();
+}
+
+/// Returns the distance from `large` > 0 to the number below it.
+inline double spacingBelow(double large, CodeBook::Values kind) {
+    const double doubles = large - std::nextafter(large, 0.0);
+    if (kind == CodeBook::Values::kWhole) return std::max(doubles, 1.0);
+    if (kind == CodeBook::Values::kDouble) return doubles;
+    return double(float(large)) - double(std::nextafter(float(large), 0.0f));
+}
+
+/// Returns the number above `value`.
+inline double nextAbove(double value, CodeBook::Values kind) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    if (kind == CodeBook::Values::kWhole)
+        return std::max(std::floor(value) + 1, std::nextafter(value, kInfinity));
+    if (kind == CodeBook::Values::kDouble) return std::nextafter(value, kInfinity);
+    return double(std::nextafter(float(value), std::numeric_limits<float>::infinity()));
+}
+
+/// Returns the number below `value`.
+inline double nextBelow(double value, CodeBook::Values kind) {
+    return -nextAbove(-value, kind);
+}
+
+/// Returns a number next to `value`.
+inline double nearestOf(double value, CodeBook::Values kind) {
+    if (kind == CodeBook::Values::kWhole) return std::nearbyint(value);
+    return kind == CodeBook::Values::kFloat ? double(float(value)) : value;
+}
+
+/// Returns the largest step of at most `width`, and at least of the spacing of numbers, whose
+/// multiples up to `large` are numbers: it has as few significant bits as that takes, at most 7.
+inline double stepBelow(double width, double large, CodeBook::Values kind) {
+    const double spacing = spacingBelow(large, kind);
+    if (!(width > spacing)) return spacing;
+    if (kind == CodeBook::Values::kWhole) return std::max(std::floor(width), spacing);
+    const int digits = kind == CodeBook::Values::kFloat ? std::numeric_limits<float>::digits
+                                                        : std::numeric_limits<double>::digits;
+    const int bits = std::clamp(digits - std::ilogb(large / width + 2) - 1, 1, 7);
+    int exponent = 0;
+    const double mantissa = std::frexp(width, &exponent);
+    return std::max(std::ldexp(std::floor(std::ldexp(mantissa, bits)), exponent - bits), spacing);
+}
+
+/// Counts where finite values lie.
+class ValueSurvey {
+  public:
+    void add(double value, std::uint64_t count = 1) {
+        const std::size_t key = keyOf(value);
+        if (cellOfKey_.empty()) cellOfKey_.assign(kKeys, 0);
+        if (cellOfKey_[key] == 0) open(key, value);
+        ValueCell& cell = cells_[cellOfKey_[key] - std::size_t{1}];
+        if (value < cell.low) cell.low = value;
+        if (value > cell.high) cell.high = value;
+        cell.count += count;
+    }
+    void append(const ValueSurvey& other);
+    /// Returns the cells in increasing order.
+    std::vector<ValueCell> cells() const;
+
+  private:
+    /// Sign, exponent and the three highest bits of what follows; 0 is not among denormals.
+    static constexpr int kShift = 49;
+    static constexpr std::size_t kKeys = (std::size_t{1} << (64 - kShift)) + 1;
+    static std::size_t keyOf(double value) {
+        return value == 0 ? kKeys - 1 : std::bit_cast<std::uint64_t>(value) >> kShift;
+    }
+    void open(std::size_t key, double value);
+
+    std::vector<std::uint16_t> cellOfKey_;  // [kKeys]: place in cells_ + 1; 0: none
+    std::vector<ValueCell> cells_;
+    std::vector<std::uint16_t> keys_;  // of cells_
+};
 
 /// What finite values have in common: all that the choice of a code book depends on.
 struct ValueCensus {

@@ -14,7 +14,7 @@
 
 #include "base/text.h"
 #include "deltasplat/error.h"
-#include "volume/grid_errors.h"
+#include "volume/tree_grid.h"
 #include "volume/tree_types.h"
 
 namespace deltasplat {

@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volume/volume_checks.h"
 
+#include <openvdb/tree/ValueAccessor.h>
+
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numeric>
+#include <string>
 
+#include "base/parallel.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
+#include "deltasplat/ingest/make_volume.h"
 #include "deltasplat/ingest/value_statistics.h"
+#include "volume/code_tree.h"
+#include "volume/tree_grid.h"
 
 namespace deltasplat {
 
@@ -54,6 +63,122 @@ void warnOfCodeError(const std::string& where, const Volume& volume, const ReadO
     listener.warn(where + ": values are kept as codes that are off by up to " +
                   numberText(volume.codeError.absolute) + ", or " + std::string(percent) +
                   " % of a value (" + volume.codeBook.name() + " code book)");
+}
+
+namespace {
+
+// @param valueOf  of what the tree holds for an active voxel
+template <typename Tree, typename ValueOf>
+void readTree(const Tree& tree, const Volume& volume, const IndexBox& box, const ValueOf& valueOf,
+              std::span<double> values, std::span<std::uint8_t> active) {
+    const glm::ivec3 dims = box.dims();
+    const double background = volume.hasBackground ? volume.background : 0;
+    const auto rows = std::size_t(dims.y) * std::size_t(dims.z);
+    parallelForChunks(rows, [&](std::size_t begin, std::size_t end) {
+        openvdb::tree::ValueAccessor<const Tree> accessor(tree);
+        for (std::size_t row = begin; row < end; ++row) {
+            const int y = box.min.y + int(row % std::size_t(dims.y));
+            const int z = box.min.z + int(row / std::size_t(dims.y));
+            std::size_t place = row * std::size_t(dims.x);
+            for (int x = 0; x < dims.x; ++x, ++place) {
+                typename Tree::ValueType value;
+                const bool isActive =
+                    accessor.probeValue(openvdb::Coord(box.min.x + x, y, z), value);
+                values[place] = isActive ? valueOf(value) : background;
+                if (!active.empty()) active[place] = isActive ? 1 : 0;
+            }
+        }
+    });
+}
+
+}  // namespace
+
+void readVoxels(const Volume& volume, const IndexBox& box, std::span<double> values,
+                std::span<std::uint8_t> active) {
+    constexpr int kMost = (1 << 30) - 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (box.min[axis] >= -kMost && box.max[axis] <= kMost) continue;
+        throw Error(
+            ErrorCode::kUsage, "voxels to read",
+            "a box from " + std::to_string(box.min[axis]) + " to " + std::to_string(box.max[axis]),
+            "indices within 2^30 of 0");
+    }
+    const glm::dvec3 dims = box.dims();
+    const double voxels = dims.x * dims.y * dims.z;
+    const auto requireSize = [&](const char* what, std::size_t size) {
+        if (double(size) == voxels) return;
+        throw Error(ErrorCode::kUsage, std::string("voxels to read: ") + what,
+                    std::to_string(size) + " values", numberText(voxels));
+    };
+    requireSize("values", values.size());
+    if (!active.empty()) requireSize("active", active.size());
+    if (voxels == 0) return;
+    if (volume.source) {
+        const bool isScalar = volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
+            readTree(
+                tree, volume, box, [](auto value) { return double(value); }, values, active);
+        });
+        if (!isScalar) {
+            throw Error(ErrorCode::kUsage, "voxels to read", "type " + volume.source->grid.type(),
+                        "a scalar grid");
+        }
+    } else if (volume.codes) {
+        readTree(
+            volume.codes->tree(), volume, box,
+            [&](Code code) { return volume.codeBook.valueOf(code); }, values, active);
+    } else {
+        throw Error(ErrorCode::kUsage, "voxels to read", "a volume without voxels",
+                    "one that was read or made");
+    }
+}
+
+std::optional<double> guessBackground(const Volume& volume) {
+    if (volume.hasBackground) return volume.background;
+    if (volume.empty()) return std::nullopt;
+    const FrequentValue most = volume.mostFrequent.value_or(mostFrequentCode(volume));
+    if (double(most.count) < kBackgroundShare * double(volume.activeCount)) return std::nullopt;
+    return most.value;
+}
+
+FrequentValue mostFrequentCode(const Volume& volume) {
+    const auto most = std::max_element(volume.histogram.begin(), volume.histogram.end());
+    return {volume.codeBook.valueOf(Code(most - volume.histogram.begin())), *most};
+}
+
+ValueHistogram histogramOfValues(const Volume& volume, int bins) {
+    ValueHistogram result{volume.valueMin, volume.valueMax, {}};
+    result.counts.assign(bins, 0);
+    if (volume.codeBook.kind == CodeBook::Kind::kInteger) {
+        const double values = volume.valueMax - volume.valueMin + 1;
+        result.high = result.low + bins * std::ceil(values / bins);
+    }
+    const double width = (result.high - result.low) / bins;
+    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
+        if (volume.histogram[code] == 0) continue;
+        const double value = volume.codeBook.valueOf(Code(code));
+        // Codes may be a little outside of the values.
+        const double bin = width > 0 ? std::max(0.0, (value - result.low) / width) : 0;
+        result.counts[std::min(int(bin), bins - 1)] += volume.histogram[code];
+    }
+    return result;
+}
+
+Code percentileCode(std::span<const std::uint64_t> counts, int percent) {
+    // In two parts, so that 2^62 voxels do not overflow.
+    const std::uint64_t total = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+    const std::uint64_t wanted = total / 100 * percent + (total % 100 * percent + 99) / 100;
+    const std::uint64_t rank = std::max<std::uint64_t>(1, wanted);
+    std::uint64_t seen = 0;
+    std::size_t code = 0;
+    while (code < counts.size() && (seen += counts[code]) < rank) ++code;
+    return code < counts.size() ? Code(code) : Code{0};
+}
+
+double percentileValue(const Volume& volume, int percent) {
+    if (volume.empty()) return volume.background;
+    // A code may be a little beyond all values that it stands for.
+    const double value = volume.codeBook.valueOf(percentileCode(volume.histogram, percent));
+    return std::clamp(value, volume.valueMin, volume.valueMax);
 }
 
 }  // namespace deltasplat

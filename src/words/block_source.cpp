@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "volume/hold_slots.h"
+#include "volume/code_blocks.h"
+#include "words/class_reader.h"
 #include "words/mix_window.h"
-#include "words/mixed_sight.h"
-#include "words/slot_holder.h"
+#include "words/value_mixer.h"
 
 namespace deltasplat {
 namespace {

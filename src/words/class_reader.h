@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "deltasplat/ingest/slot.h"
-#include "volume/class_index.h"
 #include "volume/class_ramps.h"
 #include "volume/code_blocks.h"
+#include "volume/code_math.h"
+#include "words/packed_deltas.h"
 
 namespace deltasplat {
 
@@ -32,6 +35,40 @@ class ClassReader {
     std::span<const Slot> slotMap_;
     const ClassRamps* ramps_;
     int sliceAxis_;
+};
+
+/// Says what voxels go on as that are held along the slice axis. Slots that are seen are numbered,
+/// 0 for all others; what a voxel goes on as is looked up if there are few of them, and asked for
+/// otherwise. Thread-safe.
+class SlotHolder {
+  public:
+    /// @param options  with `holds`; must outlive the holder
+    SlotHolder(const Volume& volume, const PackOptions& options);
+
+    /// Returns the number of each slot, [kSlotCount].
+    std::span<const Slot> numberOfSlot() const { return numberOf_; }
+    ClassIndex classOf(Slot number) const { return classOf_[number]; }
+    /// Whether a voxel may go on as another slot, of the same class or not.
+    bool allows(Slot held, Slot slot) const {
+        return held != 0 && slot != 0 && options_.holds(slots_[held], slots_[slot]);
+    }
+    /// Returns what a voxel goes on as.
+    Slot next(Slot held, Slot slot) const {
+        return next_.empty() ? ask(held, slot)
+                             : next_[std::size_t(held) * slots_.size() + std::size_t(slot)];
+    }
+
+  private:
+    // Slots of one class need no tolerance: the later one goes on.
+    Slot ask(Slot held, Slot slot) const {
+        return classOf_[held] != classOf_[slot] && allows(held, slot) ? held : slot;
+    }
+
+    const PackOptions& options_;
+    std::vector<Slot> numberOf_;
+    std::vector<Slot> slots_;          // by number
+    std::vector<ClassIndex> classOf_;  // likewise
+    std::vector<std::uint16_t> next_;  // [held][slot], or empty
 };
 
 }  // namespace deltasplat

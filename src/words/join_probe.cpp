@@ -12,7 +12,7 @@
 #include "base/bits.h"
 #include "base/parallel.h"
 #include "base/sorting.h"
-#include "volume/class_index.h"
+#include "volume/code_math.h"
 #include "volume/leaf_slices.h"
 #include "words/class_reader.h"
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "view/joined_slants.h"
+#include "view/base_plane.h"
 #include "volume/code_blocks.h"
 
 namespace deltasplat {

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "volume/class_index.h"
+#include "volume/code_math.h"
 
 namespace deltasplat {
 

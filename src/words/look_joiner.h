@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "volume/class_index.h"
+#include "volume/code_math.h"
 #include "words/look_palette.h"
 
 namespace deltasplat {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "volume/distinct_values.h"
+#include "volume/value_census.h"
 
 namespace deltasplat {
 

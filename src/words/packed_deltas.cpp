@@ -18,11 +18,11 @@
 #include "base/parallel.h"
 #include "base/sorting.h"
 #include "deltasplat/error.h"
+#include "words/class_reader.h"
 #include "words/joined_tiles.h"
-#include "words/mixed_sight.h"
 #include "words/pack_columns.h"
 #include "words/slice_joiner.h"
-#include "words/slot_holder.h"
+#include "words/value_mixer.h"
 
 namespace deltasplat {
 namespace {

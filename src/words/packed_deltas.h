@@ -13,7 +13,7 @@
 #include "base/uncleared.h"
 #include "deltasplat/view/factorization.h"
 #include "optics/voxel_painter.h"
-#include "volume/class_index.h"
+#include "volume/code_math.h"
 #include "volume/seen_cone.h"
 #include "words/slab_plan.h"
 

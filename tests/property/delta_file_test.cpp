@@ -18,7 +18,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
 #include "formats/delta/delta_format.h"
-#include "formats/delta/inactive_values.h"
+#include "formats/delta/exact_deltas.h"
 #include "formats/vdb/grid_metadata.h"
 #include "reference/plain_delta_reader.h"
 #include "support/kept_grid.h"

@@ -16,7 +16,7 @@
 #include "annotate/text_lines.h"
 #include "drawing/nice_step.h"
 #include "drawing/stroke_font.h"
-#include "volume/length_unit.h"
+#include "volume/placement.h"
 
 namespace deltasplat {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "optics/blackbody.h"
+#include "optics/color_space.h"
 
 #include <gtest/gtest.h>
 

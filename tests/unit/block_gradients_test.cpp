@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gradients of linear fields, which central differences state exactly.
-#include "words/block_gradients.h"
+#include "words/block_looks.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "optics/color_path.h"
+#include "optics/color_curve.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "composite/slab_cover.h"
+#include "composite/layer.h"
 #include "splat/sheet_cover.h"
 
 namespace deltasplat {

@@ -24,7 +24,6 @@
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/memory_limit.h"
 #include "formats/delta/bit_reader.h"
-#include "formats/delta/bit_writer.h"
 #include "formats/delta/delta_format.h"
 #include "formats/delta/plane_kernels.h"
 #include "formats/delta/stream_index.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "screen/depth_builder.h"
+#include "screen/deep_builder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "view/joined_slants.h"
+#include "view/base_plane.h"
 
 #include <gtest/gtest.h>
 

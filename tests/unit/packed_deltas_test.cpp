@@ -20,7 +20,7 @@
 #include "deltasplat/threads.h"
 #include "support/make_volume.h"
 #include "support/simd_levels.h"
-#include "view/joined_slants.h"
+#include "view/base_plane.h"
 #include "words/slice_joiner.h"
 
 namespace deltasplat {

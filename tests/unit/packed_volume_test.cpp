@@ -8,7 +8,7 @@
 
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/threads.h"
-#include "formats/vdb/packed_grid.h"
+#include "formats/vdb/vdb_leaves.h"
 #include "formats/vdb/write_vdb.h"
 #include "unit/convert_helpers.h"
 #include "unit/random_grid.h"

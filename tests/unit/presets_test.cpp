@@ -12,7 +12,7 @@
 #include "image/srgb.h"
 #include "optics/check_optics.h"
 #include "optics/color_curve.h"
-#include "optics/read_label_table.h"
+#include "optics/label_function.h"
 #include "optics/value_colors.h"
 #include "support/error_of.h"
 #include "support/make_volume.h"

@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/transfer_function.h"
-#include "optics/color_path.h"
+#include "optics/color_curve.h"
 #include "optics/color_space.h"
 
 namespace deltasplat {

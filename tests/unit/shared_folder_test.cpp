@@ -12,7 +12,7 @@
 #include <functional>
 
 #include "deltasplat/atomic_file.h"
-#include "files/output_target.h"
+#include "files/temporary_file.h"
 #include "support/error_of.h"
 #include "unit/temp_folder.h"
 

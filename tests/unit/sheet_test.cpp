@@ -8,7 +8,6 @@
 
 #include "base/bits.h"
 #include "deltasplat/simd.h"
-#include "splat/block_reach.h"
 #include "splat/stamp_kernels.h"
 #include "support/simd_levels.h"
 

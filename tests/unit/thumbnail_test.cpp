@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/thumbnail.h"
+#include "image/quantize.h"
 
 #include <gtest/gtest.h>
 

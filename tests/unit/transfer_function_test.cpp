@@ -11,7 +11,7 @@
 
 #include "image/srgb.h"
 #include "optics/color_curve.h"
-#include "optics/hidden_values.h"
+#include "optics/transfer_function.h"
 
 namespace deltasplat {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "formats/usd/usd_volume.h"
+#include "formats/usd/usd_scene.h"
 
 #include <functional>
 #include <random>

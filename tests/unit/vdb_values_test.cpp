@@ -12,7 +12,6 @@
 
 #include "deltasplat/ingest/read_volume.h"
 #include "deltasplat/threads.h"
-#include "formats/vdb/pack_values.h"
 #include "formats/vdb/packed_values.h"
 #include "formats/vdb/vdb_file.h"
 #include "support/same_volume.h"

@@ -8,11 +8,11 @@
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/ingest/label_list.h"
-#include "formats/read_compared.h"
+#include "formats/readers.h"
 #include "unit/convert_helpers.h"
 #include "unit/format_helpers.h"
 #include "unit/vdb_helpers.h"
-#include "volume/length_unit.h"
+#include "volume/placement.h"
 #include "volume/tree_types.h"
 
 namespace deltasplat::testing {

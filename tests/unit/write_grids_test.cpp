@@ -16,7 +16,7 @@
 #include "unit/format_helpers.h"
 #include "unit/vdb_compare.h"
 #include "unit/vdb_helpers.h"
-#include "volume/length_unit.h"
+#include "volume/placement.h"
 #include "volume/tree_types.h"
 
 namespace deltasplat::testing {

@@ -18,7 +18,6 @@
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
 #include "formats/delta/word_tree.h"
-#include "formats/vdb/leaf_pieces.h"
 #include "formats/vdb/vdb_file.h"
 #include "unit/convert_helpers.h"
 #include "unit/random_grid.h"

@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 #include "drawing/nice_step.h"
-#include "volume/length_unit.h"
+#include "volume/placement.h"
 
 namespace deltasplat {
 

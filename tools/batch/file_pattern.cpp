@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "formats/images/image_stack.h"
-#include "formats/name_signs.h"
+#include "formats/input_files.h"
 
 namespace deltasplat {
 namespace {

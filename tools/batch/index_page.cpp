@@ -8,7 +8,7 @@
 
 #include "batch/index_page_style.h"
 #include "deltasplat/image/write_image.h"
-#include "image/thumbnail.h"
+#include "image/quantize.h"
 #include "page/page_parts.h"
 #include "page/picture_data.h"
 #include "text/short_number.h"

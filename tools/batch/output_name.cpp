@@ -9,7 +9,7 @@
 
 #include "deltasplat/error.h"
 #include "files/file_name.h"
-#include "formats/name_signs.h"
+#include "formats/input_files.h"
 
 namespace deltasplat {
 namespace {

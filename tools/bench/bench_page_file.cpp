@@ -6,7 +6,7 @@
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "deltasplat/image/write_image.h"
-#include "files/descriptor.h"
+#include "files/file_bytes.h"
 
 namespace deltasplat {
 namespace {

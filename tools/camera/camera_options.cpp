@@ -8,7 +8,7 @@
 #include "base/affine.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
-#include "formats/name_signs.h"
+#include "formats/input_files.h"
 #include "options/command_line.h"
 #include "options/file_and_name.h"
 #include "sequence/frame_name.h"

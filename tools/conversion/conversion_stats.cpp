@@ -9,7 +9,7 @@
 #include "options/parse.h"
 #include "process/peak_bytes.h"
 #include "text/json_text.h"
-#include "volume/box_voxels.h"
+#include "volume/code_math.h"
 
 namespace deltasplat {
 

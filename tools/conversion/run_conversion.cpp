@@ -15,7 +15,7 @@
 #include "conversion/conversion_files.h"
 #include "deltasplat/threads.h"
 #include "files/file_name.h"
-#include "formats/name_signs.h"
+#include "formats/input_files.h"
 #include "modules/load_early.h"
 #include "output_files.h"
 #include "process/interrupt.h"

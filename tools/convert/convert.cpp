@@ -9,8 +9,8 @@
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/read_volume.h"
-#include "formats/read_compared.h"
-#include "optics/read_label_table.h"
+#include "formats/readers.h"
+#include "optics/label_function.h"
 #include "options/input_options.h"
 #include "subcommands.h"
 

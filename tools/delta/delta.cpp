@@ -14,7 +14,7 @@
 #include "deltasplat/error.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "files/file_name.h"
-#include "formats/delta/delta_origin.h"
+#include "formats/delta/delta_format.h"
 #include "options/input_options.h"
 #include "options/parse.h"
 #include "process/print_out.h"

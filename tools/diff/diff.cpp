@@ -12,8 +12,8 @@
 #include "diff/diff_options.h"
 #include "diff/diff_report.h"
 #include "files/file_name.h"
-#include "formats/read_compared.h"
-#include "formats/vdb/packed_grid.h"
+#include "formats/readers.h"
+#include "formats/vdb/vdb_leaves.h"
 #include "listener.h"
 #include "modules/load_early.h"
 #include "options/input_options.h"
@@ -23,7 +23,6 @@
 #include "sequence/frame_warnings.h"
 #include "sequence/frames_to_make.h"
 #include "subcommands.h"
-#include "volume/grid_errors.h"
 #include "volume/tree_grid.h"
 
 namespace deltasplat {

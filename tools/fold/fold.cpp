@@ -12,7 +12,7 @@
 #include "batch/file_pattern.h"
 #include "deltasplat/error.h"
 #include "deltasplat/slabs.h"
-#include "formats/name_signs.h"
+#include "formats/input_files.h"
 #include "listener.h"
 #include "output_files.h"
 #include "process/interrupt.h"

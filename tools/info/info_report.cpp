@@ -8,7 +8,7 @@
 #include "deltasplat/ingest/value_statistics.h"
 #include "info/sequence_report.h"
 #include "text/json_text.h"
-#include "volume/box_voxels.h"
+#include "volume/code_math.h"
 #include "volume_place.h"
 
 namespace deltasplat {

@@ -12,7 +12,7 @@
 #include "options/volume_choices.h"
 #include "text/short_number.h"
 #include "text/text_line.h"
-#include "volume/box_voxels.h"
+#include "volume/code_math.h"
 #include "volume_place.h"
 
 namespace deltasplat {

@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "drawing/nice_step.h"
 #include "drawing/stroke_font.h"
-#include "volume/box_voxels.h"
+#include "volume/code_math.h"
 
 namespace deltasplat {
 namespace {

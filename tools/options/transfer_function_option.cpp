@@ -7,8 +7,8 @@
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/optics/transfer_function_names.h"
+#include "optics/label_function.h"
 #include "optics/located_json.h"
-#include "optics/read_label_table.h"
 #include "options/file_and_name.h"
 
 namespace deltasplat {

@@ -21,8 +21,8 @@
 
 #include "base/text.h"
 #include "deltasplat/error.h"
-#include "files/descriptor.h"
-#include "files/output_target.h"
+#include "files/file_bytes.h"
+#include "files/temporary_file.h"
 #include "process/peak_bytes.h"
 
 namespace deltasplat {

@@ -11,7 +11,7 @@
 #include "deltasplat/atomic_file.h"
 #include "deltasplat/error.h"
 #include "files/checked_json.h"
-#include "files/file_mark.h"
+#include "files/file_name.h"
 #include "output_files.h"
 #include "render/render_options.h"
 #include "sequence/frame_name.h"

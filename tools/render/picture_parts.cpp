@@ -12,7 +12,7 @@
 #include "deltasplat/image/tone.h"
 #include "deltasplat/image/write_image.h"
 #include "deltasplat/picture.h"
-#include "image/seen_box.h"
+#include "image/exr_header.h"
 #include "render/render_modes.h"
 #include "render/tone_options.h"
 

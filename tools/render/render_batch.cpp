@@ -18,7 +18,7 @@
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/threads.h"
 #include "flag_names.h"
-#include "image/thumbnail.h"
+#include "image/quantize.h"
 #include "listener.h"
 #include "output_files.h"
 #include "process/interrupt.h"
@@ -30,7 +30,7 @@
 #include "sequence/frame_name.h"
 #include "sequence/frames_to_make.h"
 #include "sequence/run_frames.h"
-#include "volume/box_voxels.h"
+#include "volume/code_math.h"
 
 namespace deltasplat {
 namespace {

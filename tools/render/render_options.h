@@ -19,7 +19,7 @@
 #include "deltasplat/render_aovs.h"
 #include "deltasplat/render_deep.h"
 #include "deltasplat/slabs.h"
-#include "formats/usd/usd_volume.h"
+#include "formats/usd/usd_scene.h"
 #include "listener.h"
 #include "options/command_line.h"
 #include "options/cut_options.h"

@@ -16,7 +16,7 @@
 #include "camera/camera_options.h"
 #include "deltasplat/error.h"
 #include "deltasplat/threads.h"
-#include "formats/name_signs.h"
+#include "formats/input_files.h"
 #include "options/file_and_name.h"
 #include "options/transfer_function_option.h"
 #include "output_files.h"

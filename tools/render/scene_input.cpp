@@ -4,7 +4,6 @@
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "options/file_and_name.h"
-#include "volume/length_unit.h"
 #include "volume/placement.h"
 
 namespace deltasplat {

@@ -8,7 +8,7 @@
 #include "base/refuse.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
-#include "formats/name_signs.h"
+#include "formats/input_files.h"
 #include "render/color_options.h"
 #include "render/render_modes.h"
 #include "render/tone_options.h"

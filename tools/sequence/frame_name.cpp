@@ -11,7 +11,6 @@
 #include "formats/images/image_stack.h"
 #include "formats/input_files.h"
 #include "formats/input_kind.h"
-#include "formats/name_signs.h"
 
 namespace deltasplat {
 namespace {

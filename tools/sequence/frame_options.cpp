@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "deltasplat/error.h"
-#include "formats/name_signs.h"
+#include "formats/input_files.h"
 #include "options/command_line.h"
 #include "sequence/frame_list.h"
 #include "sequence/frame_name.h"

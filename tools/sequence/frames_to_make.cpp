@@ -11,7 +11,7 @@
 #include "deltasplat/ingest/list_grids.h"
 #include "formats/input_files.h"
 #include "formats/input_kind.h"
-#include "image/thumbnail.h"
+#include "image/quantize.h"
 #include "output_files.h"
 #include "process/run_log.h"
 

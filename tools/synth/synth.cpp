@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/synth/write_analytic.h"
-#include "formats/name_signs.h"
+#include "formats/input_files.h"
 #include "listener.h"
 #include "output_files.h"
 #include "process/interrupt.h"

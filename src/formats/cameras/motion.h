@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <glm/mat4x4.hpp>
 #include <string>
 
@@ -30,5 +31,11 @@ glm::dmat4 rotation(const glm::dvec3& degrees, const std::string& order);
 
 /// Returns whether it is one of the six orders of three axes.
 bool isRotationOrder(const std::string& order);
+
+/// As readCamera, of one format each.
+CameraMotion readJsonCamera(const std::filesystem::path& file);
+CameraMotion readUsdCamera(const std::filesystem::path& file, const std::string& name,
+                           const Listener& listener);
+CameraMotion readExrCamera(const std::filesystem::path& file, const Listener& listener);
 
 }  // namespace deltasplat

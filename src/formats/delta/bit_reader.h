@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
+#include <vector>
 
 namespace deltasplat {
 
@@ -69,5 +71,90 @@ struct RiceCode {
     /// Bits of a parameter.
     int parameterBits() const { return width > 32 ? 6 : 5; }
 };
+
+/// Writes what BitReader reads.
+class BitWriter {
+  public:
+    /// @param bits  0..64; those of `number` above have to be 0
+    void put(std::uint64_t number, int bits) {
+        if (bits == 0) return;
+        if (used_ == 64) {
+            words_.push_back(0);
+            used_ = 0;
+        }
+        words_.back() |= number << used_;
+        const int left = 64 - used_;
+        if (bits > left) words_.push_back(number >> left);
+        used_ = bits > left ? bits - left : used_ + bits;
+    }
+
+    /// @param number  below 2^64 - 1
+    void putNumber(std::uint64_t number) {
+        const int zeros = int(std::bit_width(number + 1)) - 1;
+        put(0, zeros);
+        put(1, 1);
+        put((number + 1) & BitReader::lowBits(zeros), zeros);
+    }
+
+    std::size_t bits() const { return 64 * words_.size() - std::size_t(64 - used_); }
+
+    /// Returns what has been written, up to a whole word.
+    const std::vector<std::uint64_t>& words() const { return words_; }
+
+  private:
+    std::vector<std::uint64_t> words_;
+    int used_ = 64;  // bits of the last word
+};
+
+/// A parameter for some numbers, and how many bits they take with it.
+struct RiceChoice {
+    int parameter = 0;
+    std::uint64_t bits = std::numeric_limits<std::uint64_t>::max();
+};
+
+/// Returns the parameter with which numbers take the fewest bits, the smallest such.
+template <typename Number>
+RiceChoice bestRice(RiceCode code, std::span<const Number> numbers) {
+    Number all = 0;
+    for (const Number number : numbers) all |= number;
+    RiceChoice best;
+    for (int parameter = 0; parameter < code.width; ++parameter) {
+        std::uint64_t bits = 0;
+        for (const Number number : numbers) {
+            const Number quotient = number >> parameter;
+            bits += quotient < RiceCode::kMostOnes ? std::uint64_t(quotient) + 1 + parameter
+                                                   : RiceCode::kMostOnes + code.width;
+        }
+        if (bits < best.bits) best = {parameter, bits};
+        // A larger one gives every number another bit.
+        if ((all >> parameter) == 0) break;
+    }
+    return best;
+}
+
+/// Writes at most 64 numbers for takePlanes.
+template <typename Number>
+void putPlanes(BitWriter& out, RiceCode code, int parameter, std::span<const Number> numbers) {
+    const auto putPlane = [&](const auto& hasBit, const auto& bitOf) {
+        std::uint64_t plane = 0;
+        int bits = 0;
+        for (const Number number : numbers)
+            if (hasBit(number)) plane |= std::uint64_t{bitOf(number)} << bits++;
+        out.put(plane, bits);
+    };
+    const auto quotientOf = [&](Number number) { return std::uint64_t(number) >> parameter; };
+    for (std::uint64_t level = 0; level < RiceCode::kMostOnes; ++level) {
+        putPlane([&](Number number) { return quotientOf(number) >= level; },
+                 [&](Number number) { return quotientOf(number) > level; });
+    }
+    for (int bit = 0; bit < parameter; ++bit) {
+        putPlane([](Number) { return true; },
+                 [&](Number number) { return (number >> bit & 1) != 0; });
+    }
+    for (const Number number : numbers) {
+        if (quotientOf(number) >= RiceCode::kMostOnes)
+            out.put(quotientOf(number), code.width - parameter);
+    }
+}
 
 }  // namespace deltasplat

@@ -17,8 +17,8 @@
 #include "formats/delta/column_decoder.h"
 #include "formats/delta/delta_columns.h"
 #include "formats/delta/restored_grid.h"
-#include "volume/box_voxels.h"
 #include "volume/code_counts.h"
+#include "volume/code_math.h"
 
 namespace deltasplat {
 namespace {

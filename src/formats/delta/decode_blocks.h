@@ -10,7 +10,7 @@
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/progress.h"
 #include "formats/delta/delta_format.h"
-#include "formats/delta/stream_columns.h"
+#include "formats/delta/delta_stream.h"
 #include "volume/slot_blocks.h"
 
 namespace deltasplat {

@@ -19,8 +19,7 @@
 #include "formats/delta/delta_columns.h"
 #include "formats/delta/exact_slots.h"
 #include "formats/delta/restored_grid.h"
-#include "volume/box_voxels.h"
-#include "volume/leaf_bytes.h"
+#include "volume/code_math.h"
 #include "volume/leaf_slices.h"
 #include "volume/value_cast.h"
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/affine.h"
-#include "base/default_floats.h"
+#include "base/parallel.h"
 #include "base/progress.h"
 #include "base/text.h"
 #include "deltasplat/diff/compare_volumes.h"

@@ -94,4 +94,10 @@ void putDeltaHeader(const DeltaHeader& header, VdbMetadata& metadata);
 /// @throw Error(kInput) at the first entry that is missing, of another type or out of range
 DeltaHeader takeDeltaHeader(const VdbMetadata& metadata, const std::string& where);
 
+/// Whether a volume has been read from deltas of its codes: then the codes are all that there is,
+/// and exact whatever their book was. Otherwise the values are those of `source`, if any.
+inline bool isOfCodes(const Volume& volume) {
+    return volume.origin && volume.origin->codeBook == volume.codeBook.name();
+}
+
 }  // namespace deltasplat

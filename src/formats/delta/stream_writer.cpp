@@ -20,7 +20,6 @@
 #include "base/sorting.h"
 #include "deltasplat/threads.h"
 #include "formats/delta/bit_reader.h"
-#include "formats/delta/bit_writer.h"
 #include "formats/delta/column_decoder.h"
 #include "formats/delta/decode_blocks.h"
 #include "formats/delta/delta_columns.h"

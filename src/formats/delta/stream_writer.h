@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "formats/delta/bit_writer.h"
+#include "formats/delta/bit_reader.h"
 #include "formats/delta/delta_format.h"
 #include "volume/tree_types.h"
 

@@ -9,7 +9,7 @@
 #include "deltasplat/ingest/volume.h"
 #include "deltasplat/progress.h"
 #include "formats/delta/delta_format.h"
-#include "formats/delta/inactive_values.h"
+#include "formats/delta/exact_deltas.h"
 
 namespace deltasplat {
 

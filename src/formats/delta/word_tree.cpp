@@ -11,7 +11,7 @@
 #include "base/parallel.h"
 #include "deltasplat/error.h"
 #include "formats/delta/bit_reader.h"
-#include "volume/leaf_bytes.h"
+#include "volume/leaf_slices.h"
 
 namespace deltasplat {
 namespace {

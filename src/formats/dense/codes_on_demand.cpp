@@ -15,7 +15,7 @@
 #include "base/parallel.h"
 #include "base/sorting.h"
 #include "formats/dense/dense_tree_builder.h"
-#include "formats/raw/raw_load.h"
+#include "formats/raw/raw_format.h"
 #include "formats/raw/raw_values.h"
 #include "volume/book_encoder.h"
 #include "volume/code_counts.h"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -8,13 +11,13 @@
 #include <utility>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/memory_limit.h"
 #include "formats/dense/codes_on_demand.h"
 #include "formats/dense/dense_source.h"
 #include "formats/dense/dense_tree_builder.h"
-#include "formats/dense/mixed_blocks.h"
 #include "formats/dense/rescale.h"
 #include "formats/raw/raw_values.h"
 #include "formats/readers.h"
@@ -23,14 +26,64 @@
 #include "volume/code_counts.h"
 #include "volume/code_tree.h"
 #include "volume/grid_values.h"
-#include "volume/leaf_bytes.h"
+#include "volume/leaf_slices.h"
 #include "volume/tree_grid.h"
 #include "volume/tree_types.h"
 #include "volume/value_cast.h"
 #include "volume/vdb_transform.h"
 
 namespace deltasplat {
+
 namespace {
+
+/// Reads a dense volume once to count the 8x8x8 blocks that are not uniform: what it takes in
+/// memory depends on little else.
+std::uint64_t countMixedBlocks(const DenseSource& source, const Listener& listener);
+
+// The slices of a layer that are in memory.
+struct Layer {
+    const DenseSource& source;
+    const std::byte* bytes;
+    int slices;
+
+    std::size_t valueBytes() const { return std::size_t(rawTypeBytes(source.type)); }
+    const std::byte* at(int x, int y, int z) const {
+        return bytes + std::size_t(z) * source.sliceBytes() + std::size_t(y) * source.rowBytes() +
+               std::size_t(x) * valueBytes();
+    }
+
+    bool isMixed(int x, int y) const {
+        const int width = std::min(8, int(source.dims.x) - x);
+        const int height = std::min(8, int(source.dims.y) - y);
+        if (width < 8 || height < 8 || slices < 8) return true;
+        const std::byte* first = at(x, y, 0);
+        const std::size_t row = 8 * valueBytes();
+        // The first row is uniform if it equals itself one value on.
+        if (std::memcmp(first, first + valueBytes(), row - valueBytes()) != 0) return true;
+        for (int z = 0; z < 8; ++z) {
+            for (int v = 0; v < 8; ++v) {
+                if (std::memcmp(first, at(x, y + v, z), row) != 0) return true;
+            }
+        }
+        return false;
+    }
+};
+
+std::uint64_t countMixedBlocks(const DenseSource& source, const Listener& listener) {
+    std::atomic<std::uint64_t> mixed{0};
+    source.forEachLayer(
+        [&](int, int slices, const std::byte* bytes) {
+            const Layer layer{source, bytes, slices};
+            parallelFor(std::size_t((source.dims.y + 7) / 8), [&](std::size_t row) {
+                std::uint64_t count = 0;
+                for (int x = 0; x < int(source.dims.x); x += 8)
+                    count += layer.isMixed(x, 8 * int(row)) ? 1 : 0;
+                mixed += count;
+            });
+        },
+        listener);
+    return mixed;
+}
 
 // Half of the progress for each of two readings, all of it for the only one.
 Listener partOf(const Listener& listener, double begin, double end) {

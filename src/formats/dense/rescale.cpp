@@ -10,7 +10,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "formats/raw/raw_load.h"
+#include "formats/raw/raw_format.h"
 
 namespace deltasplat {
 

@@ -24,7 +24,7 @@
 #include "base/parallel.h"
 #include "deltasplat/error.h"
 #include "files/file_name.h"
-#include "formats/raw/raw_load.h"
+#include "formats/raw/raw_format.h"
 #include "volume/value_cast.h"
 
 namespace deltasplat {

@@ -3,7 +3,7 @@
 // stream.
 #include "formats/dicom/dicom_stream.h"
 
-#include "formats/images/jpeg_frame.h"
+#include "formats/images/image_claims.h"
 
 namespace deltasplat {
 namespace {

@@ -15,7 +15,6 @@
 #include "deltasplat/error.h"
 #include "files/file_name.h"
 #include "formats/dense/dense_source.h"
-#include "formats/dicom/dicom_mosaic.h"
 #include "formats/dicom/dicom_pixels.h"
 #include "formats/dicom/dicom_slices.h"
 #include "formats/dicom/dicom_sniff.h"

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 
 namespace deltasplat {
@@ -24,5 +26,19 @@ bool isEnough(double packedBytes, double ratio, double unpackedBytes);
 /// @throw Error(kInput) "<file>: got 8 bytes; expected enough for 640x480 pixels", or as
 ///        requireClaimedMemory
 bool requireClaims(const std::filesystem::path& file);
+
+/// What the frame header of a JPEG or JPEG-LS picture says.
+struct JpegFrame {
+    int marker = 0;  ///< its second byte: how the picture is packed
+    int bits = 0;    ///< of a number
+    int rows = 0;
+    int columns = 0;
+    int components = 0;
+};
+
+/// Returns the first frame header; nothing if the picture's codes begin, or it ends, before one.
+/// Passes over what is no marker, as decoders do.
+/// @param next  returns the next byte; -1 behind the last one
+std::optional<JpegFrame> findJpegFrame(const std::function<int()>& next);
 
 }  // namespace deltasplat

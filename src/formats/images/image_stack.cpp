@@ -11,7 +11,7 @@
 #include "deltasplat/error.h"
 #include "files/file_name.h"
 #include "formats/format.h"
-#include "formats/name_signs.h"
+#include "formats/input_files.h"
 #include "formats/readers.h"
 
 namespace deltasplat {

@@ -18,11 +18,11 @@
 #include "deltasplat/ingest/label_list.h"
 #include "files/file_bytes.h"
 #include "files/file_name.h"
-#include "formats/choose_volume.h"
 #include "formats/dense/dense_source.h"
 #include "formats/format.h"
+#include "formats/input_files.h"
 #include "formats/raw/raw_file.h"
-#include "volume/length_unit.h"
+#include "formats/raw/raw_format.h"
 #include "volume/placement.h"
 #include "volume/volume_checks.h"
 

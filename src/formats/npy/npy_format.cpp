@@ -17,12 +17,11 @@
 #include "deltasplat/error.h"
 #include "files/file_bytes.h"
 #include "files/file_name.h"
-#include "formats/choose_volume.h"
 #include "formats/dense/dense_source.h"
 #include "formats/format.h"
+#include "formats/input_files.h"
 #include "formats/raw/raw_file.h"
-#include "formats/raw/raw_load.h"
-#include "formats/raw/raw_note.h"
+#include "formats/raw/raw_format.h"
 
 namespace deltasplat {
 

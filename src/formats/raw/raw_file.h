@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "files/file_bytes.h"
+#include "formats/dense/dense_layout.h"
 #include "formats/dense/dense_source.h"
 
 namespace deltasplat {
@@ -42,5 +43,11 @@ void requireRawSize(const RawFile& file);
 /// volumes of a plain file are not touched, those of a packed one are unpacked and passed over:
 /// what follows the volume only the first time, when the file is checked up to its end.
 DenseSource denseSourceOf(const RawFile& file);
+
+/// Says what a file does not say of where voxels lie and options can, and what nothing brings back.
+/// @param lack     what the file does not have
+/// @param options  that it has to be read with besides
+void notePlace(const DenseLayout& layout, const std::string& lack, std::string options,
+               WriteNotes& notes);
 
 }  // namespace deltasplat

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "formats/raw/raw_format.h"
 #include "formats/raw/raw_kernels.h"
-#include "formats/raw/raw_load.h"
 #include "volume/code_math.h"
 #include "volume/value_cast.h"
 

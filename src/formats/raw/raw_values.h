@@ -9,7 +9,6 @@
 #include "deltasplat/ingest/code_book.h"
 #include "formats/raw/raw_format.h"
 #include "volume/book_encoder.h"
-#include "volume/distinct_values.h"
 #include "volume/value_census.h"
 
 namespace deltasplat {

@@ -9,7 +9,6 @@
 #include "base/text.h"
 #include "files/file_name.h"
 #include "formats/text/text_header.h"
-#include "formats/text/text_volume.h"
 #include "volume/placement.h"
 
 namespace deltasplat {

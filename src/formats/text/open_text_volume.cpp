@@ -15,13 +15,12 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "files/file_name.h"
-#include "formats/choose_volume.h"
 #include "formats/dense/dense_source.h"
 #include "formats/format.h"
+#include "formats/input_files.h"
 #include "formats/raw/raw_file.h"
-#include "formats/raw/raw_load.h"
+#include "formats/raw/raw_format.h"
 #include "formats/text/text_header.h"
-#include "formats/text/text_volume.h"
 #include "volume/volume_checks.h"
 
 namespace deltasplat {

@@ -3,9 +3,18 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/mat4x4.hpp>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "deltasplat/ingest/label_list.h"
+#include "deltasplat/progress.h"
+#include "files/file_bytes.h"
+#include "formats/dense/rescale.h"
+#include "formats/raw/raw_format.h"
 
 namespace deltasplat {
 
@@ -52,5 +61,81 @@ void settleNrrd(DenseLayout& layout, const std::string& file, WriteNotes& notes)
 std::string nrrdHeader(const DenseLayout& layout, const std::string& dataFile);
 void settleMetaImage(DenseLayout& layout, const std::string& file, WriteNotes& notes);
 std::string metaImageHeader(const DenseLayout& layout, const std::string& dataFile);
+
+struct TextHeader;
+
+/// A label of a segmentation in layers.
+struct Segment {
+    std::int64_t layer = 0;
+    std::int64_t stored = 0;  ///< its value there
+    LabelEntry label;         ///< with its value where all layers are one
+};
+
+/// What a NRRD or MetaImage header says, checked: where the values lie, what they are, and where
+/// the voxels are.
+struct TextVolume {
+    enum class Encoding { kBytes, kNumbers, kHex };
+
+    std::filesystem::path header;
+    std::filesystem::path dataFile;  ///< the header itself, or another file
+    std::uint64_t dataStart = 0;  ///< place in the data file, unpacked if that is gzip as a whole
+    Encoding encoding = Encoding::kBytes;
+    bool packed = false;               ///< whether the values are packed there by themselves
+    Packing packing = Packing::kGzip;  ///< how, if so
+    std::uint64_t skipBytes = 0;       ///< of the values' bytes, unpacked, before the first
+    bool atEnd = false;                ///< whether the values are the last bytes of the data file
+
+    std::vector<std::int64_t> sizes;  ///< of all axes, the fastest first
+    RawLayout layout;                 ///< of one volume; skipBytes is not used
+    std::int64_t volumes = 1;         ///< of which one is read
+    bool interleaved = false;         ///< whether the volumes' values are side by side
+
+    glm::dmat4 worldFromIndex{1.0};
+    std::string space;       ///< as Volume::space
+    std::string lengthUnit;  ///< as Volume::lengthUnit
+    Rescale rescale;
+    std::shared_ptr<const LabelList> labels;  ///< as Volume::labels; of layers: null
+    std::vector<Segment> segments;            ///< of layers: those that lie in them, lowest first
+    bool renumbered = false;  ///< whether they have other values where all layers are one
+
+    std::string sizesText() const;
+};
+
+/// Reads the header of a .nrrd or .nhdr file. Says what is turned and what unit is not known.
+/// @throw Error(kInput) if it cannot be read or meant, or names no data file that is there
+TextVolume readNrrdVolume(const std::filesystem::path& file, const Listener& listener);
+
+/// Reads the header of a .mhd or .mha file; likewise.
+TextVolume readMetaVolume(const std::filesystem::path& file, const Listener& listener);
+
+/// Takes the segments of a .seg.nrrd as the labels of the file, the first lowest. A header without
+/// them may say that its values are labels, as NIfTI does.
+void readSegments(const TextHeader& header, TextVolume& volume);
+
+/// Returns the value of a field.
+/// @throw Error(kInput) if there is none
+const std::string& requireField(const TextHeader& header, const std::string& field,
+                                const std::filesystem::path& file);
+
+/// Returns the whole number of a field, or `missing`.
+std::int64_t wholeField(const TextHeader& header, const std::string& field, std::int64_t missing,
+                        const std::filesystem::path& file);
+
+/// Returns the numbers that a text holds between blanks; nothing if it holds anything else.
+std::optional<std::vector<double>> numbersIn(const std::string& text);
+
+/// Takes a data file beside the header.
+/// @throw Error(kInput) for lists and series of files, standard input, and no such file
+void setDataFile(const std::string& name, TextVolume& volume);
+
+/// Leaves three of the axes, whose sizes are the volume's then: those of one voxel give way, the
+/// last first.
+/// @throw Error(kInput) if more than three are longer
+void takeThree(std::vector<std::size_t>& axes, TextVolume& volume);
+
+/// Turns lengths along each row of a place into those of one unit: of a patient's space into
+/// millimetres, of others too where the units differ.
+/// @param units  of x, y and z of the world, as files have them
+void setUnits(const std::vector<std::string>& units, const Listener& listener, TextVolume& volume);
 
 }  // namespace deltasplat

@@ -10,7 +10,7 @@
 #include "volume/code_math.h"
 #include "volume/code_tree.h"
 #include "volume/grid_values.h"
-#include "volume/leaf_bytes.h"
+#include "volume/leaf_slices.h"
 #include "volume/tree_grid.h"
 #include "volume/tree_types.h"
 #include "volume/value_cast.h"

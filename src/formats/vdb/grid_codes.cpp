@@ -27,9 +27,9 @@
 #include "volume/code_counts.h"
 #include "volume/code_tree.h"
 #include "volume/float_kernels.h"
-#include "volume/grid_errors.h"
 #include "volume/grid_values.h"
-#include "volume/leaf_bytes.h"
+#include "volume/leaf_slices.h"
+#include "volume/tree_grid.h"
 #include "volume/tree_types.h"
 
 namespace deltasplat {

@@ -4,12 +4,20 @@
 #include <openvdb/Grid.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <optional>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "base/text.h"
+#include "deltasplat/error.h"
+#include "deltasplat/ingest/list_grids.h"
+#include "files/file_name.h"
+#include "formats/delta/delta_format.h"
+#include "formats/input_files.h"
+#include "formats/vdb/vdb_file.h"
 
 namespace deltasplat {
 
@@ -92,6 +100,134 @@ std::string gridClassOf(const VdbMetadata& metadata) {
         lowerCase(stored.substr(begin, stored.find_last_not_of(kSpaces) + 1 - begin));
     const bool isKnown = name == kLevelSetClass || name == kFogClass || name == kStaggeredClass;
     return isKnown ? name : kUnknownClass;
+}
+
+namespace {
+
+// As caches of smoke and fire simulations (Mantaflow, Houdini) call them.
+constexpr std::array<std::string_view, 8> kHelpers{
+    "flags", "shadow", "pressure", "obstacle", "obstacles", "collision", "divergence", "mask"};
+constexpr std::array<std::string_view, 2> kHelperBegins{"phi", "fractions"};
+// The surface of a liquid, which simulations of it keep for its own sake; their other names that
+// begin so are of obstacles and inflows.
+constexpr std::string_view kSurface = "phi";
+constexpr std::array<std::string_view, 4> kHelperEnds{"_noise", "_inflow", "_in", "_old"};
+
+enum Rank { kNone, kHelper, kHelperFog, kSurfaceOfLiquid, kOther, kFog };
+
+Rank rankOf(const VdbFile& file, const VdbGrid& grid, VdbBytes& bytes) {
+    if (grid.vector) return kNone;
+    const std::string gridClass = gridClassOf(file.summary(grid, bytes).metadata);
+    // Of types that nobody knows, those are numbers that say what they are numbers of.
+    if (!grid.numeric && gridClass != kFogClass && gridClass != kLevelSetClass) return kNone;
+    const bool fog = gridClass == kFogClass;
+    const std::string name = grid.plainName();
+    if (lowerCase(name) == kSurface) return kSurfaceOfLiquid;
+    if (isHelperName(name)) return fog ? kHelperFog : kHelper;
+    return fog ? kFog : kOther;
+}
+
+// Null if no grid has the name.
+const VdbGrid* densityOf(const VdbFile& file) {
+    const VdbGrid* found = nullptr;
+    for (const VdbGrid& grid : file.grids()) {
+        if (grid.plainName() != "density") continue;
+        if (grid.numeric) return &grid;
+        if (!found) found = &grid;
+    }
+    return found;
+}
+
+}  // namespace
+
+bool isHelperName(const std::string& gridName) {
+    const std::string name = lowerCase(gridName);
+    return std::any_of(kHelpers.begin(), kHelpers.end(), [&](auto word) { return name == word; }) ||
+           std::any_of(kHelperBegins.begin(), kHelperBegins.end(),
+                       [&](auto word) { return name.starts_with(word); }) ||
+           std::any_of(kHelperEnds.begin(), kHelperEnds.end(),
+                       [&](auto word) { return name.ends_with(word); });
+}
+
+const VdbGrid* defaultGrid(const VdbFile& file) {
+    if (const VdbGrid* const density = densityOf(file)) return density;
+    const VdbGrid* best = nullptr;
+    Rank bestRank = kNone;
+    VdbBytes bytes = file.bytes();
+    for (const VdbGrid& grid : file.grids()) {
+        const Rank rank = rankOf(file, grid, bytes);
+        if (rank <= bestRank) continue;
+        best = &grid;
+        bestRank = rank;
+        if (rank == kFog) break;
+    }
+    return best;
+}
+
+const VdbGrid* toldDefaultGrid(const VdbFile& file) {
+    try {
+        return defaultGrid(file);
+    } catch (const Error&) {
+        return nullptr;
+    }
+}
+
+namespace {
+
+// As caches of Houdini, Mantaflow, EmberGen and others call them, those first that say most of
+// where it burns.
+constexpr std::array<std::string_view, 6> kFires{"flame", "flames", "fire",
+                                                 "burn",  "heat",   "temperature"};
+constexpr std::array<std::string_view, 4> kColors{"cd", "color", "colour", "albedo"};
+
+}  // namespace
+
+bool isColorType(const std::string& type) {
+    return type == "vec3s" || type == "vec3d";
+}
+
+MediumGrids mediumGrids(const std::vector<VolumeEntry>& entries) {
+    const auto firstOf = [&](const auto& names, const auto& suits) -> std::string {
+        for (const std::string_view name : names) {
+            for (const VolumeEntry& entry : entries)
+                if (suits(entry) && lowerCase(entry.name) == name) return entry.name;
+        }
+        return "";
+    };
+    MediumGrids grids;
+    // One that cannot be read is the one that is meant all the same, and reading it says why.
+    grids.emission = firstOf(
+        kFires, [](const VolumeEntry& entry) { return entry.scalar || !entry.obstacle.empty(); });
+    grids.color =
+        firstOf(kColors, [](const VolumeEntry& entry) { return isColorType(entry.type); });
+    grids.otherEmission = firstOf(kFires, [&](const VolumeEntry& entry) {
+        const bool isEmpty = entry.box && entry.box->empty();
+        return entry.scalar && !isEmpty && entry.name != grids.emission;
+    });
+    return grids;
+}
+
+GridList listGrids(const std::filesystem::path& file) {
+    requireRegularFile(file);
+    if (inputsAreConfined()) requireConfined(file);
+    GridList list;
+    const VdbFile vdb(file);
+    const VdbGrid* const preferred = toldDefaultGrid(vdb);
+    if (preferred && preferred->isScalar()) list.preferred = preferred->name;
+    for (const VdbGrid& grid : vdb.grids()) {
+        if (grid.isScalar()) {
+            list.scalar.push_back(grid.name);
+        } else {
+            list.others.push_back(grid.describe());
+        }
+        const bool mayBeDelta = grid.type == "int32" || grid.type == "int64";
+        if (mayBeDelta && isDeltaGrid(grid.type, vdb.metadata(grid))) {
+            list.deltas.push_back(grid.name);
+        } else {
+            list.ordinary.push_back(grid.describe());
+        }
+    }
+    return list;
 }
 
 }  // namespace deltasplat

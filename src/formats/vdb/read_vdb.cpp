@@ -6,7 +6,7 @@
 #include <utility>
 #include <variant>
 
-#include "base/default_floats.h"
+#include "base/parallel.h"
 #include "base/progress.h"
 #include "base/refuse.h"
 #include "base/text.h"
@@ -17,13 +17,11 @@
 #include "formats/input_files.h"
 #include "formats/input_kind.h"
 #include "formats/readers.h"
-#include "formats/vdb/default_grid.h"
 #include "formats/vdb/grid_metadata.h"
 #include "formats/vdb/grid_volume.h"
-#include "formats/vdb/packed_grid.h"
 #include "formats/vdb/vdb_file.h"
+#include "formats/vdb/vdb_leaves.h"
 #include "formats/vdb/vector_part.h"
-#include "volume/grid_errors.h"
 #include "volume/tree_grid.h"
 #include "volume/tree_types.h"
 #include "volume/vdb_transform.h"

@@ -23,8 +23,8 @@
 #include "formats/vdb/vdb_leaves.h"
 #include "formats/vdb/vdb_tree.h"
 #include "formats/vdb/vdb_walk.h"
-#include "volume/grid_errors.h"
-#include "volume/vdb_bytes.h"
+#include "volume/tree_grid.h"
+#include "volume/vdb_metadata.h"
 #include "volume/vdb_transform.h"
 
 namespace deltasplat {

@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "deltasplat/progress.h"
-#include "formats/vdb/packed_grid.h"
 #include "formats/vdb/vdb_leaves.h"
-#include "formats/vdb/vdb_tiles.h"
+#include "formats/vdb/vdb_tree.h"
 #include "volume/tree_grid.h"
 #include "volume/vdb_metadata.h"
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cassert>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +12,7 @@
 #include "files/file_bytes.h"
 #include "formats/vdb/vdb_leaves.h"
 #include "formats/vdb/vdb_walk.h"
+#include "volume/code_nodes.h"
 #include "volume/tree_types.h"
 
 namespace deltasplat {
@@ -37,5 +40,26 @@ typename openvdb::tree::Tree4<T, 5, 4, 3>::Type::Ptr readNodes(const FileBytes& 
                                                                T background,
                                                                const std::vector<VdbNode>& nodes,
                                                                const VdbLeaves& leaves);
+
+/// The active tiles of a grid of numbers.
+class VdbTiles {
+  public:
+    const std::vector<TilePlace>& places() const { return places_; }
+    /// @tparam T  the grid's value type
+    template <typename T>
+    std::span<const T> values() const {
+        assert(values_.size() == places_.size() * sizeof(T));
+        return {reinterpret_cast<const T*>(values_.data()), places_.size()};
+    }
+
+    /// Reads and unpacks them, on all threads.
+    /// @return nothing if they are damaged
+    static std::optional<VdbTiles> read(const FileBytes& file, const VdbValueFormat& format,
+                                        const std::vector<VdbNode>& nodes);
+
+  private:
+    std::vector<TilePlace> places_;
+    std::vector<char> values_;  // halves as floats or doubles
+};
 
 }  // namespace deltasplat

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "volume/vdb_bytes.h"
+#include "volume/vdb_metadata.h"
 
 namespace deltasplat {
 

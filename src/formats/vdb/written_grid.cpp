@@ -4,7 +4,6 @@
 #include <type_traits>
 
 #include "deltasplat/error.h"
-#include "formats/vdb/tree_writer.h"
 #include "volume/tree_types.h"
 
 namespace deltasplat {

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
+// Based on: the OpenVDB file format, as OpenVDB 10's headers write it (Tree.h, RootNode.h,
+// InternalNode.h, LeafNode*.h).
 #pragma once
 
 #include <openvdb/Types.h>
 #include <openvdb/math/Maps.h>
+#include <openvdb/tree/Tree.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "formats/vdb/packed_values.h"
 #include "volume/tree_grid.h"
 #include "volume/vdb_metadata.h"
 
@@ -73,5 +80,165 @@ WrittenGrid writtenWords(const TreeGrid& grid);
 /// Returns what is written of a grid of deltas, of int32 or int64: active values, on a background
 /// of 0, sooner than writtenGrid() has it.
 WrittenGrid writtenDeltas(const TreeGrid& grid);
+
+/// How a tree that OpenVDB has is written: as it is.
+/// @tparam T  its Tree
+template <typename T>
+class OwnValues {
+  public:
+    using Tree = T;     ///< has the nodes
+    using Written = T;  ///< what the file has
+    using Leaf = typename Tree::LeafNodeType;
+    using Value = typename Tree::ValueType;
+
+    explicit OwnValues(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {}
+
+    const Tree& tree() const { return *tree_; }
+    Value background() const { return tree_->background(); }
+    Value ofTile(const Value& stored, bool) const { return stored; }
+    LeafNote appendLeaf(const Leaf& leaf, bool half, std::string& to) const {
+        return appendNode(leaf.buffer().data(), leaf.getValueMask(), {}, background(), half, to);
+    }
+
+    void appendBools(const Leaf& leaf, std::string& to) const {
+        to.append(reinterpret_cast<const char*>(leaf.buffer().data()), sizeof leaf.getValueMask());
+    }
+
+  private:
+    std::shared_ptr<const Tree> tree_;
+};
+
+/// How a tree of deltas is written: active values alone, for others mean nothing.
+template <typename T>
+class DeltaValues : public OwnValues<T> {
+  public:
+    using typename OwnValues<T>::Leaf;
+    using OwnValues<T>::OwnValues;
+
+    LeafNote appendLeaf(const Leaf& leaf, bool, std::string& to) const {
+        constexpr std::int8_t kKind = openvdb::io::NO_MASK_OR_INACTIVE_VALS;
+        appendBytes(kKind, to);
+        std::array<typename T::ValueType, Leaf::SIZE> values;
+        std::size_t count = 0;
+        const auto* const all = leaf.buffer().data();
+        forBits(leaf.getValueMask(), [&](std::size_t i) { values[count++] = all[i]; });
+        return {kKind, appendStored(values.data(), count, false, to)};
+    }
+};
+
+/// Writes a tree.
+/// @tparam Source  says what values its nodes have: OwnValues, or what does the same
+template <typename Source>
+class TreeWriter : public WrittenTree {
+  public:
+    using Tree = typename Source::Tree;
+    using Leaf = typename Tree::LeafNodeType;
+    using Written = typename Source::Written;
+    using Value = typename Written::ValueType;
+
+    explicit TreeWriter(Source source) : source_(std::move(source)) {
+        source_.tree().getNodes(leaves_);
+    }
+
+    TreeFacts facts() const override {
+        const Tree& tree = source_.tree();
+        TreeFacts facts;
+        facts.type = openvdb::typeNameAsString<typename Written::BuildType>();
+        facts.activeVoxels = tree.activeVoxelCount();
+        tree.evalActiveVoxelBoundingBox(facts.activeBox);
+        const auto counts = tree.nodeCount();  // leaves first, the root last
+        using Root = typename Written::RootNodeType;
+        using Upper = typename Root::ChildNodeType;
+        facts.memoryBytes = sizeof(Written) + sizeof(Root) + counts[0] * leafMemory() +
+                            counts[1] * nodeMemory<typename Upper::ChildNodeType>() +
+                            counts[2] * nodeMemory<Upper>();
+        return facts;
+    }
+
+    std::string topology(bool half) const override {
+        std::string bytes;
+        const auto& root = source_.tree().root();
+        const Value background = source_.background();
+        appendBytes(std::uint32_t{1}, bytes);  // buffers
+        appendBytes(half ? Value(openvdb::io::truncateRealToHalf(background)) : background, bytes);
+        std::uint32_t tiles = 0;
+        std::string tileBytes;
+        for (auto tile = root.cbeginValueAll(); tile; ++tile, ++tiles) {
+            appendPlace(tile.getCoord(), tileBytes);
+            appendBytes(source_.ofTile(*tile, tile.isValueOn()), tileBytes);
+            appendBytes(tile.isValueOn(), tileBytes);
+        }
+        appendBytes(tiles, bytes);
+        appendBytes(std::uint32_t(root.childCount()), bytes);
+        bytes += tileBytes;
+        for (auto child = root.cbeginChildOn(); child; ++child) {
+            appendPlace(child.getCoord(), bytes);
+            appendInner(*child, half, bytes);
+        }
+        return bytes;
+    }
+
+    std::size_t leafCount() const override { return leaves_.size(); }
+    bool notesLeaves() const override { return !kIsBool; }
+
+    void packLeaves(std::size_t begin, std::size_t end, bool half,
+                    PackedLeaves& to) const override {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Leaf& leaf = *leaves_[i];
+            appendBytes(leaf.getValueMask(), to.bytes);
+            if constexpr (kIsBool) {
+                appendPlace(leaf.origin(), to.bytes);
+                if constexpr (!kIsMask) source_.appendBools(leaf, to.bytes);
+            } else {
+                const LeafNote note = source_.appendLeaf(leaf, half, to.bytes);
+                to.kinds.push_back(note.kind);
+                to.sizes.push_back(note.size);
+            }
+        }
+    }
+
+  private:
+    static constexpr bool kIsBool = std::is_same_v<Value, bool>;
+    static constexpr bool kIsMask = std::is_same_v<typename Written::BuildType, openvdb::ValueMask>;
+
+    static constexpr std::uint64_t leafMemory() {
+        using WrittenLeaf = typename Written::LeafNodeType;
+        return sizeof(WrittenLeaf) + (kIsBool ? 0 : WrittenLeaf::SIZE * sizeof(Value));
+    }
+
+    template <typename Node>
+    static constexpr std::uint64_t nodeMemory() {
+        return Node::NUM_VALUES * sizeof(typename Node::UnionType) +
+               2 * sizeof(typename Node::NodeMaskType) + sizeof(openvdb::Coord);
+    }
+
+    static void appendPlace(const openvdb::Coord& place, std::string& to) {
+        to.append(reinterpret_cast<const char*>(place.data()), 3 * sizeof(openvdb::Int32));
+    }
+
+    // Appends a node that has nodes or leaves, and the nodes below.
+    template <typename Node>
+    void appendInner(const Node& node, bool half, std::string& to) const {
+        const auto& children = node.getChildMask();
+        const auto& active = node.getValueMask();
+        appendBytes(children, to);
+        appendBytes(active, to);
+        // Of children no more than their place matters.
+        const auto values = std::make_unique<Value[]>(Node::NUM_VALUES);
+        for (auto tile = node.cbeginValueAll(); tile; ++tile)
+            values[tile.pos()] = source_.ofTile(*tile, tile.isValueOn());
+        appendNode(values.get(), active, children, source_.background(), half, to);
+        for (auto child = node.cbeginChildOn(); child; ++child) {
+            if constexpr (Node::LEVEL > 1) {
+                appendInner(*child, half, to);
+            } else {
+                appendBytes(child->getValueMask(), to);
+            }
+        }
+    }
+
+    Source source_;
+    std::vector<const Leaf*> leaves_;  // depth first, as a file has them
+};
 
 }  // namespace deltasplat

@@ -19,7 +19,6 @@
 #include <vector>
 
 #include "base/affine.h"
-#include "base/default_floats.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/text.h"

@@ -8,17 +8,16 @@
 #include <optional>
 #include <utility>
 
-#include "base/default_floats.h"
-#include "base/enum_name.h"
 #include "base/kept_memory.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/progress.h"
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "deltasplat/prepared_scene.h"
 #include "picture/extras/render_deep.h"
 #include "picture/far_groups.h"
-#include "screen/depth_builder.h"
+#include "screen/deep_builder.h"
 
 namespace deltasplat {
 namespace {

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "base/affine.h"
-#include "base/default_floats.h"
 #include "base/kept_memory.h"
 #include "base/memory.h"
 #include "base/parallel.h"

@@ -8,7 +8,7 @@
 #include "composite/layer.h"
 #include "deltasplat/picture.h"
 #include "optics/hold_rule.h"
-#include "picture/plane_view.h"
+#include "picture/picture_view.h"
 
 namespace deltasplat {
 

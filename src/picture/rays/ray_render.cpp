@@ -9,23 +9,217 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/affine.h"
 #include "base/parallel.h"
+#include "base/portable_math.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "deltasplat/error.h"
+#include "deltasplat/image/pixel_box.h"
+#include "deltasplat/optics/default_ramp.h"
+#include "deltasplat/render.h"
 #include "deltasplat/threads.h"
-#include "picture/empty_picture.h"
+#include "optics/value_colors.h"
 #include "picture/far_groups.h"
-#include "picture/rays/ray_picture.h"
-#include "rays/line_group.h"
+#include "picture/render_views.h"
 #include "rays/picture_lines.h"
 #include "rays/ray_follower.h"
+#include "rays/ray_volume.h"
 #include "screen/clear_image.h"
 
 namespace deltasplat {
+
 namespace {
+
+/// What rays are followed through, for some pixels of a picture.
+struct RayTask {
+    const Volume& volume;  ///< not empty
+    const RenderOptions& options;
+    const Camera& camera;
+    PixelBox part;            ///< what images are of
+    IndexBox whole;           ///< of the volume, or of all that it is a group of
+    bool keepsFound = false;  ///< as ValuePainter
+};
+
+/// Checks what only modes other than kComposite are asked.
+/// @throw Error(kUsage) naming the option
+void checkRayOptions(const RenderOptions& options);
+
+/// Returns what lines of sight meet of a value in a mode other than kComposite. The smallest of
+/// values is the largest of what they are below 0.
+ValueMap valueMapOf(const RenderOptions& options);
+
+/// Whether a mode shows sums along the line of sight; the others show values, and whether there are
+/// any.
+bool showsSums(Mode mode);
+
+/// Warns of what makes the picture another than who asked for it may think: numbers that 32-bit
+/// floats do not hold, radiographs of what is no CT scan, and
+/// x-rays of what is one.
+/// @param slices     that are added up
+/// @param stepWorld  length of the way through one
+void warnOfValues(const Volume& volume, const RenderOptions& options, int slices, double stepWorld,
+                  const Listener& listener);
+
+/// What a pixel that shows values has found.
+struct FoundValue {
+    float value = 0;     ///< as mapped
+    float shade = 1;     ///< as DepthShade
+    bool isMet = false;  ///< whether there is a value
+    float weight = 1;    ///< of means: how much of active voxels has been met
+};
+
+/// Makes pixels of values, as colours or as numbers; or keeps in them what has been found, for
+/// several to be put together.
+class ValuePainter {
+  public:
+    /// @param rays  of which values are
+    ValuePainter(const Volume& volume, const RenderOptions& options, const RayVolume& rays,
+                 bool keepsFound = false);
+
+    void paint(const FoundValue& found, float* rgba) const;
+    /// Returns what a pixel has kept.
+    static FoundValue keptIn(const float* rgba) { return {rgba[0], rgba[1], rgba[3] > 0, rgba[2]}; }
+
+  private:
+    float lowest_;
+    float highest_;
+    float darkest_;  // what shading leads to
+    float sign_;
+    bool keepsFound_;
+    std::optional<ValueColors> colors_;
+};
+
+/// Turns integrals of mu, which all channels of a picture hold, into what x-rays leave.
+void showTransmission(const Drr& drr, Image& image);
+
+void requirePositive(const char* option, double number) {
+    if (std::isfinite(number) && number > 0) return;
+    throw Error(ErrorCode::kUsage, option, numberText(number), "a finite number > 0");
+}
+
+// Rays reckon in 32-bit floats: says where these are not enough.
+void warnOfFloats(const Volume& volume, const RenderOptions& options, int slices, double stepWorld,
+                  const Listener& listener) {
+    const ValueMap map = valueMapOf(options);
+    const bool sums = showsSums(options.mode);
+    const double largest = std::max(std::abs(map(volume.valueMin)), std::abs(map(volume.valueMax)));
+    // Below, numbers lose digits: 1e5 times that is what 1e-5 of the largest value needs.
+    constexpr double kSmallest = 1e5 * double(std::numeric_limits<float>::min());
+    const std::string values = "values of up to " + numberText(largest);
+    // Values are added up before they are multiplied by the length of a step.
+    const double step = sums ? stepWorld : 1;
+    const double sum = largest * slices * std::max(step, 1.0);
+    if (largest > kLargestRayValue) {
+        listener.warn(values +
+                      ": those beyond +-8.5e+37 are taken for that, as x-rays and largest "
+                      "values are 32-bit floats");
+    } else if (largest > 0 && largest * std::min(step, 1.0) < kSmallest) {
+        listener.warn(values + " lose digits, or become 0, as 32-bit floats");
+    }
+    const bool adds = sums || options.mode == Mode::kAverage;
+    if (adds && sum > double(std::numeric_limits<float>::max())) {
+        listener.warn(values +
+                      " may add up to more than a 32-bit float holds: pixels are wrong where they "
+                      "do");
+    }
+}
+
+// Attenuation is known of Hounsfield units only.
+void warnOfOtherUnits(const Volume& volume, const Listener& listener) {
+    if (isHounsfield(volume)) return;
+    const std::string values =
+        "values from " + numberText(volume.valueMin) + " to " + numberText(volume.valueMax);
+    listener.warn("`mode` drr: is for Hounsfield units (air -1000, water 0), which " + values +
+                  (volume.space.empty()
+                       ? " of a file that names no patient's space may not be"
+                       : ", with hardly any air or hardly any soft tissue, seem not to be"));
+}
+
+// Integrals of Hounsfield units mean little: air counts less than what is outside of the scan.
+void warnOfHounsfield(const Volume& volume, const Listener& listener) {
+    if (!isHounsfield(volume)) return;
+    listener.warn(
+        "`mode` xray: adds up Hounsfield units, where air is -1000 and what is outside of the scan "
+        "counts as 0, as water does: the less a line of sight has of the scan, the brighter; "
+        "`mode` drr makes radiographs");
+}
+
+void checkRayOptions(const RenderOptions& options) {
+    requirePositive("`drr.muWater`", options.drr.muWater);
+    if (options.drr.photons) requirePositive("`drr.photons`", *options.drr.photons);
+    if (!(options.depthShade >= 0 && options.depthShade <= 1)) {
+        throw Error(ErrorCode::kUsage, "`depthShade`", numberText(options.depthShade),
+                    "a number from 0 to 1");
+    }
+}
+
+ValueMap valueMapOf(const RenderOptions& options) {
+    if (options.mode == Mode::kMin) return {.scale = -1};
+    if (options.mode == Mode::kDrr) {
+        const double mu = options.drr.muWater;
+        return {.scale = mu / 1000, .offset = mu, .least = 0};
+    }
+    return {};
+}
+
+bool showsSums(Mode mode) {
+    return mode == Mode::kXray || mode == Mode::kDrr;
+}
+
+void warnOfValues(const Volume& volume, const RenderOptions& options, int slices, double stepWorld,
+                  const Listener& listener) {
+    if (options.mode == Mode::kDrr) warnOfOtherUnits(volume, listener);
+    if (options.mode == Mode::kXray) warnOfHounsfield(volume, listener);
+    warnOfFloats(volume, options, slices, stepWorld, listener);
+}
+
+ValuePainter::ValuePainter(const Volume& volume, const RenderOptions& options,
+                           const RayVolume& rays, bool keepsFound)
+    : lowest_(rays.lowest),
+      highest_(rays.highest),
+      darkest_(std::min(rays.lowest, 0.0f)),
+      sign_(options.mode == Mode::kMin ? -1.0f : 1.0f),
+      keepsFound_(keepsFound) {
+    if (options.mipColors) colors_.emplace(volume, options.optics);
+}
+
+void ValuePainter::paint(const FoundValue& found, float* rgba) const {
+    rgba[3] = found.isMet ? 1.0f : 0.0f;
+    if (!found.isMet) {
+        std::fill_n(rgba, 3, 0.0f);
+        return;
+    }
+    if (keepsFound_) {
+        rgba[0] = found.value;
+        rgba[1] = found.shade;
+        rgba[2] = found.weight;
+        return;
+    }
+    // No -0.
+    const float value = sign_ * std::clamp(found.value, lowest_, highest_) + 0.0f;
+    if (colors_) {
+        const glm::vec3 color = found.shade * colors_->colorOf(value);
+        for (int c = 0; c < 3; ++c) rgba[c] = color[c];
+    } else {
+        const bool isFull = found.shade == 1;
+        std::fill_n(rgba, 3, isFull ? value : darkest_ + found.shade * (value - darkest_));
+    }
+}
+
+void showTransmission(const Drr& drr, Image& image) {
+    const double photons = drr.photons.value_or(1);
+    parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
+        float* rgba = image.pixel(0, int(y));
+        for (int x = 0; x < image.size.x; ++x, rgba += 4) {
+            std::fill_n(rgba, 3, float(photons * portable::exp(-double(rgba[0]))));
+            rgba[3] = 1;
+        }
+    });
+}
 
 // Lines of sight along each side of a tile, of which what they read of eight slices stays in the
 // second-level cache. Of largest and smallest values much is left out, and more of small tiles.
