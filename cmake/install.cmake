@@ -6,12 +6,8 @@ set(DELTASPLAT_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/deltasplat)
 install(EXPORT deltasplat-targets NAMESPACE deltasplat:: DESTINATION ${DELTASPLAT_CMAKE_DIR})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/deltasplat-config-version.cmake
                                  COMPATIBILITY SameMinorVersion)
-# What the library was built with, so that its users look for the same.
-file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/deltasplat-options.cmake @ONLY
-     CONTENT "set(DELTASPLAT_DICOM @DELTASPLAT_DICOM@)\n")
 install(FILES ${PROJECT_BINARY_DIR}/deltasplat-config-version.cmake
-              ${PROJECT_BINARY_DIR}/deltasplat-options.cmake
-              cmake/deltasplat-config.cmake cmake/dependencies.cmake cmake/find_gdcm.cmake
+              cmake/deltasplat-config.cmake cmake/dependencies.cmake
         DESTINATION ${DELTASPLAT_CMAKE_DIR})
 # What there is to read, where the links of README.md lead.
 if(PROJECT_IS_TOP_LEVEL)

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Functions that a module does, and nothing besides.
-#include <utility>
-
 #include "formats/cameras/motion.h"
-#include "formats/dicom/dicom_sniff.h"
 #include "formats/readers.h"
 #include "modules/image_module.h"
-#include "modules/medical_module.h"
 
 namespace deltasplat {
 
@@ -18,16 +14,6 @@ DenseSource openImages(const std::filesystem::path& input, const std::string& na
                        const std::vector<std::filesystem::path>& files, const ReadOptions& options,
                        const Listener& listener) {
     return imageModule().openImages(input, name, files, options, listener);
-}
-
-std::vector<DicomSeries> findSeries(const std::filesystem::path& input,
-                                    const std::vector<std::filesystem::path>& files) {
-    return medicalModule().findSeries(input, files);
-}
-
-DenseSource openDicom(const std::filesystem::path& input, const std::string& name,
-                      DicomSeries series) {
-    return medicalModule().openDicom(input, name, std::move(series));
 }
 
 }  // namespace deltasplat

@@ -9,6 +9,7 @@
 #include "deltasplat/image/color_management.h"
 #include "image/quantize.h"
 #include "image/srgb.h"
+#include "modules/helper_process.h"
 #include "modules/image_module.h"
 
 namespace deltasplat {
@@ -29,12 +30,27 @@ DepthImage readDepthImage(const std::filesystem::path& file, const Listener& lis
     return imageModule().readDepthImage(file, listener);
 }
 
+// Names and paths that have a zero in them are none that OpenColorIO knows.
+std::string textOf(const ColorOptions& options) {
+    std::string all;
+    for (const std::string& text :
+         {options.config.string(), options.workingSpace, options.colorSpace, options.display,
+          options.displayView, options.look.string()})
+        all += text + '\0';
+    return all;
+}
+
 struct ColorTransform::Impl {
     std::unique_ptr<ColorProcessor> processor;
 };
 
-ColorTransform::ColorTransform(const ColorOptions& options)
-    : impl_(std::make_unique<Impl>(Impl{imageModule().makeColorProcessor(options)})) {}
+ColorTransform::ColorTransform(const ColorOptions& options) : impl_(std::make_unique<Impl>()) {
+    constexpr double kBytesOfOpenImageIo = 112 << 20;  // resident, once it is loaded
+    HelperProcess helper("colors", kBytesOfOpenImageIo);
+    // Both load the same libraries, which takes longer than all else, and do so at once.
+    if (!options.colorSpace.empty() || options.isShown()) helper.beginRequest(textOf(options), 0);
+    impl_->processor = imageModule().makeColorProcessor(options, helper);
+}
 ColorTransform::~ColorTransform() = default;
 ColorTransform::ColorTransform(ColorTransform&&) noexcept = default;
 

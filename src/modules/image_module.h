@@ -13,6 +13,7 @@ struct ColorOptions;
 struct DenseSource;
 struct DepthImage;
 struct Environment;
+class HelperProcess;
 struct Image;
 struct ImageFileOptions;
 struct Listener;
@@ -33,7 +34,9 @@ struct ImageModule {
     /// Of .tif and .jpg alone.
     std::string (*encodeImage)(const std::filesystem::path& file, const Image& image,
                                const ImageFileOptions& options);
-    std::unique_ptr<ColorProcessor> (*makeColorProcessor)(const ColorOptions& options);
+    /// @param helper  at work on textOf(options), if they ask for anything
+    std::unique_ptr<ColorProcessor> (*makeColorProcessor)(const ColorOptions& options,
+                                                          HelperProcess& helper);
     bool (*isWholeImage)(const std::filesystem::path& file);
     Image (*readThumbnail)(const std::filesystem::path& file, int mostSide);
     std::string (*encodeThumbnail)(const Image& image);
@@ -50,12 +53,17 @@ struct ImageModule {
 /// @throw Error(kFailed) if it cannot be loaded
 const ImageModule& imageModule();
 
+/// ColorOptions as what the helper is asked for, and back.
+std::string textOf(const ColorOptions& options);
+ColorOptions colorOptionsOf(const std::string& text);
+
 /// What the module is made of.
 namespace image_module {
 
 std::string encodeImage(const std::filesystem::path& file, const Image& image,
                         const ImageFileOptions& options);
-std::unique_ptr<ColorProcessor> makeColorProcessor(const ColorOptions& options);
+std::unique_ptr<ColorProcessor> makeColorProcessor(const ColorOptions& options,
+                                                   HelperProcess& helper);
 bool isWholeImage(const std::filesystem::path& file);
 Image readThumbnail(const std::filesystem::path& file, int mostSide);
 std::string encodeThumbnail(const Image& image);

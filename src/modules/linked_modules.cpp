@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "modules/image_module.h"
-#include "modules/medical_module.h"
 
 namespace deltasplat {
 
 const ImageModule& imageModule() {
     return image_module::kModule;
-}
-
-const MedicalModule& medicalModule() {
-    return medical_module::kModule;
 }
 
 }  // namespace deltasplat

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
+#include <cerrno>
+#include <cstdlib>
 #include <filesystem>
+#include <thread>
+#include <vector>
 
 #include "deltasplat/ingest/list_grids.h"
+#include "formats/dicom/dicom_pixels.h"
+#include "support/error_of.h"
 #include "unit/dicom_helpers.h"
 #include "unit/format_helpers.h"
 #include "unit/lossless_jpeg.h"
@@ -137,19 +144,73 @@ std::string runLengths(const std::vector<std::uint16_t>& pixels) {
     return bytesOf(table) + segments[0] + segments[1];
 }
 
-TEST(ReadDicom, PackedPixels) {
-    const TempFolder folder;
-    auto files = slices(3);
+std::vector<DicomFile> packedSlices(int count) {
+    auto files = slices(count);
     for (DicomFile& file : files) {
         file.syntax = "1.2.840.10008.1.2.5";
         file.fragments = {runLengths(file.pixels)};
-        file.intercept = "-7";
     }
+    return files;
+}
+
+TEST(ReadDicom, PackedPixels) {
+    const TempFolder folder;
+    auto files = packedSlices(3);
+    for (DicomFile& file : files) file.intercept = "-7";
     write(files);
     EXPECT_EQ(valuesOf(readVolume("scan")), expected(3, 1, -7));
     files[1].fragments[0].resize(70);
     write(files);
     expectInputError("scan");
+}
+
+// Each has a helper of its own, which is gone with the reading.
+TEST(ReadDicom, PackedPixelsInManyThreads) {
+    const TempFolder folder;
+    write(packedSlices(9));
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < 8; ++i)
+        threads.emplace_back([] { EXPECT_EQ(valuesOf(readVolume("scan")), expected(9)); });
+    threads.clear();
+    EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
+    EXPECT_EQ(errno, ECHILD);
+}
+
+TEST(ReadDicom, PackedPixelsBehindDamagedOnes) {
+    const TempFolder folder;
+    const std::string packed = runLengths({0, 1, 2, 3, 4, 5});
+    writeBytes("whole", packed);
+    writeBytes("cut", packed.substr(0, 70));
+    DicomReader reader;
+    const auto read = [&](const std::string& file) {
+        DicomSlice slice;
+        slice.file = file;
+        slice.columns = slice.pixels.columns = 3;
+        slice.rows = slice.pixels.rows = 2;
+        slice.pixels.syntax = "1.2.840.10008.1.2.5";
+        slice.pixels.packed = true;
+        slice.pixels.pieces = {{0, std::filesystem::file_size(file)}};
+        std::vector<std::uint16_t> values(6);
+        reader.read(slice, {RawType::kUint16, 0}, reinterpret_cast<std::byte*>(values.data()));
+        return values;
+    };
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(read("whole"), (std::vector<std::uint16_t>{0, 1, 2, 3, 4, 5}));
+        EXPECT_EQ(test::errorOf([&] { read("cut"); }),
+                  "input: cut: got pixels that GDCM cannot unpack, or not all of them; expected "
+                  "the pixels that the header names");
+    }
+}
+
+// Not the file is to blame.
+TEST(ReadDicom, PackedPixelsWithoutTheHelper) {
+    const TempFolder folder;
+    write(packedSlices(2));
+    ::setenv("DELTASPLAT_HELPER", "none", 1);
+    EXPECT_EQ(test::errorOf([] { readVolume("scan"); }),
+              "failed: deltasplat-helper: got no file none; expected the program that "
+              "DELTASPLAT_HELPER names");
+    ::unsetenv("DELTASPLAT_HELPER");
 }
 
 TEST(ReadDicom, OneSlice) {

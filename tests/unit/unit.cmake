@@ -69,12 +69,15 @@ if(DELTASPLAT_DICOM)
         unit/read_dicom_values_test.cpp)
 endif()
 
+# Does to the helper what foreign libraries do.
+deltasplat_helper_work(fault unit/helper_fault.cpp)
+
 # What the program has besides the library.
 set(tools ${PROJECT_SOURCE_DIR}/tools)
 deltasplat_tests(tools_tests unit
     unit/annotate_test.cpp unit/bench_picture_test.cpp unit/bench_runs_test.cpp
     unit/drawing_test.cpp unit/file_pattern_test.cpp unit/flag_names_test.cpp
-    unit/frame_list_test.cpp unit/frame_name_test.cpp unit/in_child_test.cpp
+    unit/frame_list_test.cpp unit/frame_name_test.cpp unit/helper_process_test.cpp
     unit/index_page_test.cpp unit/interrupt_test.cpp unit/large_pages_test.cpp
     unit/listener_test.cpp unit/memory_gate_test.cpp unit/output_name_test.cpp
     unit/picture_legend_test.cpp unit/poses_test.cpp unit/preview_file_test.cpp

@@ -15,7 +15,6 @@
 #include "base/text.h"
 #include "deltasplat/error.h"
 #include "modules/image_module.h"
-#include "modules/medical_module.h"
 #include "modules/module_version.h"
 #include "modules/open_library.h"
 
@@ -36,8 +35,7 @@ void requireMemoryOf(const std::string& name) {
         double mebibytes;  // resident
     };
     static constexpr Library kLibraries[] = {{"openvdb", "OpenVDB's library", 28},
-                                             {"images", "OpenImageIO's library", 112},
-                                             {"medical", "GDCM's library", 19}};
+                                             {"images", "OpenImageIO's library", 112}};
     for (const Library& library : kLibraries)
         if (name == library.module) requireMemory(library.name, library.mebibytes * 0x1p20);
 }
@@ -90,11 +88,6 @@ void* openModule(const char* name, int binding) {
 
 const ImageModule& imageModule() {
     static const ImageModule& module = load<ImageModule>("images");
-    return module;
-}
-
-const MedicalModule& medicalModule() {
-    static const MedicalModule& module = load<MedicalModule>("medical");
     return module;
 }
 

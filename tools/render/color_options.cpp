@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/color_options.h"
 
+#include <mutex>
 #include <string>
 
 #include "deltasplat/error.h"
@@ -59,6 +60,12 @@ void addColorOptions(CLI::App& app, ColorOptions& options) {
                    "OpenColorIO reads, from and to what is displayed, 0 to 1");
 }
 
+const ColorTransform& colorsOf(const RenderCommand& command) {
+    KeptColors& kept = *command.keptColors;
+    std::call_once(kept.once, [&] { kept.transform.emplace(command.color); });
+    return *kept.transform;
+}
+
 void checkColors(const RenderCommand& command) {
     const ColorOptions& color = command.color;
     const auto refuse = [](const std::string& option, const std::string& got,
@@ -81,7 +88,7 @@ void checkColors(const RenderCommand& command) {
     }
     if (color.isShown() && command.tone.tone != Tone::kStandard)
         refuse("--tone", toneName(command.tone.tone) + " with " + option, "one of the two");
-    ColorTransform{color};
+    colorsOf(command);
 }
 
 void warnOfUnusedColorOptions(const CLI::App& app, const RenderCommand& command,
@@ -95,7 +102,7 @@ void warnOfUnusedColorOptions(const CLI::App& app, const RenderCommand& command,
 
 void convertColors(const RenderCommand& command, Image& image, ImageFileOptions& file) {
     if (command.color.colorSpace.empty()) return;
-    const ColorTransform transform(command.color);
+    const ColorTransform& transform = colorsOf(command);
     transform.convert(image);
     for (std::size_t i = 0; i < file.channels.size(); ++i)
         if (isLight(file.channels, i)) convertLight(transform, image.size, &file.channels[i]);

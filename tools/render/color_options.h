@@ -10,6 +10,10 @@ namespace deltasplat {
 /// Declares the options of colour management.
 void addColorOptions(CLI::App& app, ColorOptions& options);
 
+/// Returns what the command's ColorOptions make.
+/// @throw Error as ColorTransform's constructor
+const ColorTransform& colorsOf(const RenderCommand& command);
+
 /// @throw Error(kUsage), Error(kInput) for what is asked for where it cannot be, or what the
 ///        configuration does not have
 void checkColors(const RenderCommand& command);

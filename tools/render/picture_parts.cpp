@@ -2,7 +2,6 @@
 #include "render/picture_parts.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "base/memory.h"
 #include "base/progress.h"
@@ -13,6 +12,7 @@
 #include "deltasplat/image/write_image.h"
 #include "deltasplat/picture.h"
 #include "image/exr_header.h"
+#include "render/color_options.h"
 #include "render/render_modes.h"
 #include "render/tone_options.h"
 
@@ -29,15 +29,14 @@ constexpr double kRenderShare = 0.5;
 template <typename Use>
 void forParts(const ShowPart& show, const RenderCommand& command, const PixelBox& box,
               const Use& use) {
-    std::optional<ColorTransform> transform;
-    if (!command.color.colorSpace.empty()) transform.emplace(command.color);
+    const bool isConverted = !command.color.colorSpace.empty();
     const int most = std::max(1, int(kPartBytes / (kBytesPerPixel * box.size().x)));
     for (int first = box.min.y; first < box.max.y; first += most) {
         const int last = std::min(first + most, box.max.y);
         Image rows({box.size().x, last - first});
         show({{box.min.x, first}, {box.max.x, last}}, rows);
         if (command.picture.background) compositeOver(rows, *command.picture.background);
-        if (transform) transform->convert(rows);
+        if (isConverted) colorsOf(command).convert(rows);
         use(rows, first);
     }
 }

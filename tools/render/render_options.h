@@ -6,6 +6,8 @@
 #include <glm/common.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -101,6 +103,12 @@ struct SceneChoice {
     bool moves() const { return motion && !motion->frames.empty(); }
 };
 
+/// A colour transform that is made when it is first asked for: that takes longer than its use.
+struct KeptColors {
+    std::once_flag once;
+    std::optional<ColorTransform> transform;
+};
+
 /// What `deltasplat render` was asked to do.
 struct RenderCommand {
     std::filesystem::path input;
@@ -114,6 +122,8 @@ struct RenderCommand {
     OverscanChoice overscan;
     ToneChoice tone;
     ColorOptions color;
+    /// What `color` makes, for all copies of the command.
+    std::shared_ptr<KeptColors> keptColors = std::make_shared<KeptColors>();
     ChannelChoice channels;
     AovOptions aovOptions;
     std::optional<GroundChoice> ground;  ///< whose shadow is shown; empty: none

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "deltasplat/image/tone.h"
+#include "render/color_options.h"
 #include "render/render_modes.h"
 
 namespace deltasplat {
@@ -88,7 +89,7 @@ void applyTone(const RenderCommand& command, Image& image, ImageFileOptions& fil
                                                {"tone", toneName(choice.tone)}});
     const bool isBeyondHalf = countBeyondHalf(image) > 0;
     if (choice.exposureStops != 0) expose(image, choice.exposureStops);
-    if (command.color.isShown()) return ColorTransform(command.color).show(image);
+    if (command.color.isShown()) return colorsOf(command).show(image);
     if (choice.tone == Tone::kFilmic) return toneFilmic(image);
     warnOfClipping(command, image, isBeyondHalf, listener);
 }

@@ -92,8 +92,8 @@ struct ReadOptions {
 /// Reads one scalar volume: `.vdb .raw .npy .nii .hdr .nrrd .nhdr .mhd .mha .dcm` and images
 /// (`.tif .png .jpg .bmp .pgm .exr`, of which pages are slices) by extension, in any case, all but
 /// DICOM and images also under gzip, which is found by content (.raw, .raw.gz: by name); a
-/// folder of DICOM slices or of images; a stack `slice.####.png` or `slice.%04d.png`. DICOM needs a
-/// build with GDCM. What is passed over is said in a warning.
+/// folder of DICOM slices or of images; a stack `slice.####.png` or `slice.%04d.png`. Packed
+/// DICOM needs a build with GDCM (deltasplat-helper). What is passed over is said in a warning.
 /// Level sets and NaN are treated as `options` says; only active values of a .vdb count, a NaN
 /// background is taken as `nanValue` or 0, with a warning. An empty grid is a valid, empty volume,
 /// with a warning. Deterministic; not affected by the number of threads.

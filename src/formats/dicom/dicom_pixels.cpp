@@ -1,25 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels that are not packed are read here. For others GDCM gets a file made from what it needs:
-// the packed pixels and the numbers that describe them, which are the packed picture's own. It
-// would trust all else that a file holds, and end the process where that is wrong.
+// Pixels that are not packed are read here. For others GDCM, in the helper program, gets a file
+// made from what it needs: the packed pixels and the numbers that describe them, which are the
+// packed picture's own. It would trust all else that a file holds, and end the helper where that is
+// wrong.
 #include "formats/dicom/dicom_pixels.h"
-
-#include <gdcmImage.h>
-#include <gdcmImageReader.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <memory>
-#include <sstream>
 #include <utility>
 
-#include "base/cleared_memory.h"
-#include "base/in_child.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "deltasplat/error.h"
@@ -68,23 +60,20 @@ std::string readPiece(const DicomSlice& slice, const DicomPixels::Piece& piece) 
     return bytes;
 }
 
-// What the cells of an unpacked picture are: the numbers that GDCM is told, and finds again.
-struct CellFormat {
-    int allocated = 16;
-    int stored = 16;
-    bool isSigned = false;
-
-    gdcm::PixelFormat format() const {
-        using Number = unsigned short;
-        return gdcm::PixelFormat(1, Number(allocated), Number(stored), Number(stored - 1),
-                                 isSigned ? 1 : 0);
+// What GDCM is told of an unpacked picture, and has to find again. Run lengths are of whole cells.
+DicomUnpacking unpackingOf(const DicomPixels& pixels, const std::optional<DicomStream>& stream) {
+    DicomUnpacking what;
+    what.columns = pixels.columns;
+    what.rows = pixels.rows;
+    what.allocated = what.stored = pixels.bits.allocated;
+    if (stream) {
+        what.allocated = stream->bits <= 8 ? 8 : stream->bits <= 16 ? 16 : 32;
+        what.stored = stream->bits;
+        what.isSigned = stream->isSigned;
     }
-};
-
-// Run lengths are of whole cells.
-CellFormat formatOf(const DicomPixels& pixels, const std::optional<DicomStream>& stream) {
-    if (!stream) return {pixels.bits.allocated, pixels.bits.allocated, false};
-    return {stream->bits <= 8 ? 8 : stream->bits <= 16 ? 16 : 32, stream->bits, stream->isSigned};
+    what.bytes = std::uint64_t(pixels.columns) * std::uint64_t(pixels.rows) *
+                 std::uint64_t(what.allocated / 8);
+    return what;
 }
 
 std::string sizeText(std::uint64_t columns, std::uint64_t rows) {
@@ -122,82 +111,43 @@ std::string fragment(const std::string& content) {
 }
 
 // A CT slice, packed as the file is.
-std::string cleanFile(const DicomPixels& pixels, const CellFormat& cells,
+std::string cleanFile(const std::string& syntax, const DicomUnpacking& what,
                       const std::string& packed) {
     const std::string kClass = "1.2.840.10008.5.1.4.1.1.2";
     const std::string kInstance = "1.2.3.4";
     const std::string meta = name(0x00020002, "UI", kClass) + name(0x00020003, "UI", kInstance) +
-                             name(0x00020010, "UI", pixels.syntax);
+                             name(0x00020010, "UI", syntax);
     std::string file = std::string(128, '\0') + "DICM" + head(0x00020000, "UL", 4) +
                        littleEndian(meta.size(), 4) + meta + name(0x00080016, "UI", kClass) +
                        name(0x00080018, "UI", kInstance) + number(0x00280002, 1) +
-                       name(0x00280004, "CS", "MONOCHROME2") + number(0x00280010, pixels.rows) +
-                       number(0x00280011, pixels.columns) + number(0x00280100, cells.allocated) +
-                       number(0x00280101, cells.stored) + number(0x00280102, cells.stored - 1) +
-                       number(0x00280103, cells.isSigned ? 1 : 0) +
+                       name(0x00280004, "CS", "MONOCHROME2") + number(0x00280010, what.rows) +
+                       number(0x00280011, what.columns) + number(0x00280100, what.allocated) +
+                       number(0x00280101, what.stored) + number(0x00280102, what.stored - 1) +
+                       number(0x00280103, what.isSigned ? 1 : 0) +
                        head(0x7fe00010, "OB", kUndefined) + fragment("");
     return file + fragment(packed) + littleEndian(0xfffe, 2) + littleEndian(0xe0dd, 2) +
            littleEndian(0, 4);
 }
 
-// Where a child's libraries complain: libjpeg, inside of GDCM, makes up what a code stream lacks,
-// and prints that it did.
-class Complaints {
-  public:
-    Complaints() : file_(::memfd_create("complaints", 0)) {
-        std::fflush(stderr);
-        ::dup2(file_, STDERR_FILENO);
-    }
-    bool any() const {
-        std::fflush(stderr);
-        struct stat status {};
-        return ::fstat(file_, &status) != 0 || status.st_size != 0;
-    }
-
-  private:
-    int file_;
-};
-
-bool unpack(const DicomPixels& pixels, const CellFormat& cells, const std::string& clean,
-            std::size_t bytes, std::byte* out) {
-    std::istringstream in(clean);
-    gdcm::ImageReader reader;
-    reader.SetStream(in);
-    if (!reader.Read()) return false;
-    const gdcm::Image& image = reader.GetImage();
-    const unsigned* dims = image.GetDimensions();
-    return dims[0] == unsigned(pixels.columns) && dims[1] == unsigned(pixels.rows) &&
-           image.GetPixelFormat() == cells.format() && image.GetBufferLength() == bytes &&
-           image.GetBuffer(reinterpret_cast<char*>(out));
-}
-
-std::size_t pixelCount(const DicomPixels& pixels) {
-    return std::size_t(pixels.columns) * std::size_t(pixels.rows);
-}
-
-DicomCells unpackedCells(const DicomSlice& slice) {
+DicomCells unpackedCells(const DicomSlice& slice, HelperProcess& helper) {
+#ifndef DELTASPLAT_DICOM
+    refuseFile(slice.file, "packed pixels", "a build with DELTASPLAT_DICOM=ON to unpack them");
+#endif
     const DicomPixels& pixels = slice.pixels;
     std::string packed;  // in one piece: GDCM does not join those of JPEG 2000
     for (const DicomPixels::Piece& piece : pixels.pieces) packed += readPiece(slice, piece);
     DicomCells cells;
     cells.stream = checkedStream(slice, packed);
-    const CellFormat format = formatOf(pixels, cells.stream);
-    const std::size_t bytes = pixelCount(pixels) * std::size_t(format.allocated / 8);
-    constexpr double kTimes = 18;  // here, shared with the child, and what codecs take
-    requireMemory(slice.file.string(), kTimes * double(bytes));
-    cells.bits = format.allocated;
+    const DicomUnpacking what = unpackingOf(pixels, cells.stream);
+    constexpr double kTimes = 18;  // here, in the helper and on the way, and what codecs take
+    requireMemory(slice.file.string(), kTimes * double(what.bytes));
+    cells.bits = what.allocated;
     cells.bigEndian = std::endian::native == std::endian::big;
-    cells.bytes.resize(bytes);
-    const std::string clean = cleanFile(pixels, format, packed);
-    const ClearedMemory cleared;
-    // GDCM's codecs end the process where packed pixels are damaged.
-    const bool done = inChild(
-        bytes,
-        [&](std::byte* out) {
-            const Complaints complaints;
-            return unpack(pixels, format, clean, bytes, out) && !complaints.any();
-        },
-        cells.bytes.data());
+    cells.bytes.resize(std::size_t(what.bytes));
+    std::string request(sizeof what, '\0');
+    std::memcpy(request.data(), &what, sizeof what);
+    helper.beginRequest(request + cleanFile(pixels.syntax, what, packed), cells.bytes.size());
+    const bool done = helper.finishRequest(cells.bytes.data());
     if (!done) {
         refuseFile(slice.file, "pixels that GDCM cannot unpack, or not all of them",
                    "the pixels that the header names");
@@ -323,7 +273,7 @@ void DicomReader::read(const DicomSlice& slice, const DicomTarget& target, std::
     if (file_ != slice.file || place_ != place) {
         file_.clear();
         cells_ = {};
-        cells_ = pixels.packed ? unpackedCells(slice) : plainCells(slice);
+        cells_ = pixels.packed ? unpackedCells(slice, helper_) : plainCells(slice);
         file_ = slice.file;
         place_ = place;
     }

@@ -8,6 +8,7 @@
 #include "formats/dicom/dicom_slices.h"
 #include "formats/dicom/dicom_stream.h"
 #include "formats/raw/raw_format.h"
+#include "modules/helper_process.h"
 
 namespace deltasplat {
 
@@ -26,15 +27,18 @@ struct DicomTarget {
 };
 
 /// Reads the slices of files one after the other. Of slices that lie in one picture, that is read
-/// once.
+/// once. All calls come from one thread.
 class DicomReader {
   public:
-    /// Reads the values of a slice. Packed ones are unpacked by GDCM.
+    /// Reads the values of a slice. GDCM unpacks packed ones, in the helper.
     /// @param to  [rows][columns] of target.type
     /// @throw Error(kInput) if there are no such pixels
     void read(const DicomSlice& slice, const DicomTarget& target, std::byte* to);
 
   private:
+    static constexpr double kBytesOfGdcm = 19 << 20;  // resident, once it is loaded
+
+    HelperProcess helper_{"dicom", kBytesOfGdcm};
     std::filesystem::path file_;
     std::uint64_t place_ = 0;
     DicomCells cells_;

@@ -24,4 +24,14 @@ std::optional<DicomStream> readStreamHeader(std::string_view bytes);
 /// Whether bytes begin as such a picture does.
 bool beginsPicture(std::string_view bytes);
 
+/// What the helper is to unpack: the beginning of a request, before a DICOM file of these pixels.
+struct DicomUnpacking {
+    std::uint64_t bytes = 0;  ///< of the unpacked picture
+    std::int32_t columns = 0;
+    std::int32_t rows = 0;
+    std::int32_t allocated = 16;  ///< bits of a cell
+    std::int32_t stored = 16;     ///< bits of a number
+    std::uint64_t isSigned = 0;
+};
+
 }  // namespace deltasplat

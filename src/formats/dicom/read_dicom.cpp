@@ -19,7 +19,6 @@
 #include "formats/dicom/dicom_slices.h"
 #include "formats/dicom/dicom_sniff.h"
 #include "formats/dicom/dicom_walk.h"
-#include "modules/medical_module.h"
 #include "volume/placement.h"
 
 namespace deltasplat {
@@ -413,8 +412,8 @@ void addFile(const std::filesystem::path& path, std::map<std::string, DicomSerie
 
 }  // namespace
 
-std::vector<DicomSeries> medical_module::findSeries(
-    const std::filesystem::path& input, const std::vector<std::filesystem::path>& files) {
+std::vector<DicomSeries> findSeries(const std::filesystem::path& input,
+                                    const std::vector<std::filesystem::path>& files) {
     std::map<std::string, DicomSeries> byUid;
     for (const std::filesystem::path& file : files) addFile(file, byUid);
     if (byUid.empty()) refuseFile(input, "no image", "DICOM slices");
@@ -428,8 +427,8 @@ std::vector<DicomSeries> medical_module::findSeries(
     return all;
 }
 
-DenseSource medical_module::openDicom(const std::filesystem::path& input, const std::string& name,
-                                      DicomSeries series) {
+DenseSource openDicom(const std::filesystem::path& input, const std::string& name,
+                      DicomSeries series) {
     if (series.error) throw Error(*series.error);
     auto files = std::make_shared<DicomFiles>();
     const DicomValues values = valuesOf(series.slices);
