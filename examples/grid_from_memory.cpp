@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
         layout.worldFromIndex[2][2] = 1.5;  // slices lie farther apart than voxels in them
         layout.background = 0;              // empty, as an inactive voxel of a .vdb
         const Volume volume = makeVolume(std::span<const float>(values), layout);
-        std::printf("%llu voxels\n", (unsigned long long)volume.activeCount);
+        std::printf("%llu voxels\n", (unsigned long long)volume.activeCount());
 
         const RenderResult result = render(volume);
         writeImage(argv[1], result.image, {});

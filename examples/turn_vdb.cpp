@@ -22,7 +22,8 @@ int main(int argc, char** argv) {
         // No voxel changes: only the way from indices to the world does.
         const double quarter = glm::radians(90.0);
         const glm::dmat4 turn = glm::rotate(glm::dmat4(1), quarter, glm::dvec3(0, 1, 0));
-        volume.worldFromIndex = turn * volume.worldFromIndex;
+        volume =
+            volume.withPlace(turn * volume.worldFromIndex(), volume.space(), volume.lengthUnit());
 
         std::vector<Volume> volumes;
         volumes.push_back(std::move(volume));

@@ -49,11 +49,11 @@ Json vectorJson(const glm::dvec3& v) {
 
 VolumePlace placeOf(const Volume& volume) {
     VolumePlace place;
-    const glm::dmat4& matrix = volume.worldFromIndex;
+    const glm::dmat4& matrix = volume.worldFromIndex();
     place.origin = glm::dvec3(matrix[3]);
     for (int axis = 0; axis < 3; ++axis)
         place.directions[axis] = glm::dvec3(matrix[axis]) / volume.voxelSize()[axis];
-    place.box = worldBox(volume.box, matrix);
+    place.box = worldBox(volume.box(), matrix);
     return place;
 }
 
@@ -86,8 +86,8 @@ Json placeJson(const Volume& volume) {
     return {{"world_box", {vectorJson(place.box.min), vectorJson(place.box.max)}},
             {"origin", vectorJson(place.origin)},
             {"directions", {vectorJson(d[0]), vectorJson(d[1]), vectorJson(d[2])}},
-            {"space", volume.space.empty() ? Json() : Json(volume.space)},
-            {"length_unit", volume.lengthUnit.empty() ? Json() : Json(volume.lengthUnit)},
+            {"space", volume.space().empty() ? Json() : Json(volume.space())},
+            {"length_unit", volume.lengthUnit().empty() ? Json() : Json(volume.lengthUnit())},
             {"target", vectorJson(camera.targetWorld)},
             {"frame_width", camera.frameWidthWorld}};
 }

@@ -8,30 +8,28 @@
 
 namespace deltasplat {
 
-/// A file that appears under its final name only when it is whole: written beside it under a name
-/// of its own (`.deltasplat.<name>.<number>.tmp`), then renamed. Destroyed without commit(), it
-/// leaves nothing; what a process that was killed leaves, the next one removes that writes the same
-/// file. A final name that is a symbolic link stays one, and what it leads to is replaced. A final
-/// name that exists and is no regular file (a device, a pipe) is written to directly, and so is one
-/// of a file that is open (/dev/stdout, /proc/self/fd/3), whatever it is, behind what is in it.
+/// A file that appears under its final name only when it is whole: commit() renames a temporary
+/// file beside it (`.deltasplat.<name>.<number>.tmp`). Without commit() nothing remains, and the
+/// next process that writes the same file removes the temporary file of a killed process. A final
+/// name that is a symbolic link stays a link, and its target is replaced. A final name that exists
+/// and is no regular file (a device, a pipe) is written to directly, as is the name of an open file
+/// of any kind (/dev/stdout, /proc/self/fd/3), behind its content.
 ///
-/// The file is written, checked and given its permissions through one descriptor, and its folder is
-/// kept open too: whoever else may write in that folder cannot have anything written elsewhere. A
-/// file that is replaced keeps its permissions, and its owner and group as far as this user may
-/// give them; until then nobody else can read the new one. Not thread-safe; different objects are
-/// independent.
+/// One descriptor serves to write the file, to check it and to set its permissions, and the folder
+/// is kept open too, so other users of the folder cannot redirect the writing. A replaced file
+/// keeps its permissions, and its owner and group as far as this user may set them; until then
+/// nobody else can read the new file. Not thread-safe; different objects are independent.
 class AtomicFile {
   public:
-    /// Makes sure at once that the file can be written, so that it may be asked before long work.
+    /// Checks at once that the file can be written, so that callers can find out before long work.
     /// @throw Error(kOutput) if the folder does not exist or cannot be written to, if the final
-    /// name is a folder, a file without write permission or a link that cannot be resolved
+    ///        name is a folder, a file without write permission or a link that cannot be resolved
     explicit AtomicFile(std::filesystem::path finalPath);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
-    /// Where to write: a descriptor of an empty file that can also be read, or of a device. It
-    /// stays this object's.
+    /// Returns this object's descriptor of an empty file that can also be read, or of a device.
     /// @throw Error(kOutput) if a device cannot be opened
     int descriptor();
     /// Whether the final name is of a device, a pipe or an open file.
@@ -39,22 +37,19 @@ class AtomicFile {
     /// The name given to the constructor, for messages.
     const std::filesystem::path& finalPath() const;
 
-    /// Writes after what was written before.
     /// @throw Error(kOutput) if not all bytes can be written
     void write(const void* bytes, std::size_t size);
-    /// Makes sure that all was written, so that what is left to do in commit() is the renaming.
+    /// Makes sure that all bytes were written, so that commit() has only the renaming left.
     /// @throw Error(kOutput) if not all bytes could be written
     void close();
     /// Gives the whole file its final name, after close().
-    /// @throw Error(kOutput) if that fails, or if somebody else put another file in its place;
-    /// whatever the commit gate throws
+    /// @throw Error(kOutput) if that fails or somebody replaced the file; what the gate throws
     void commit();
-    /// Gives first a data file and then this one, its header, their final names, after close() of
-    /// both: all that may take long or fail is done before either name changes. Who is killed
-    /// between the two renames leaves the old header beside the new data file.
-    /// @throw Error(kOutput), whatever the commit gate throws: as commit()
+    /// Gives a data file and then this file, its header, their final names, after close() of both:
+    /// all slow or fallible work is done before either name changes. A process killed between the
+    /// two renames leaves the old header beside the new data file.
+    /// @throw as commit()
     void commitWithData(AtomicFile& data);
-    /// Whether the file has got its final name.
     bool isCommitted() const;
 
   private:
@@ -66,16 +61,15 @@ class AtomicFile {
 /// @throw Error(kOutput) if it cannot be written, a full disk included
 void writeFileAtomically(const std::filesystem::path& file, std::string_view bytes);
 
-/// Sets what is called right before any file gets its final name or loses it; nullptr: nothing. It
-/// may throw to keep that from happening. For the whole process; thread-safe.
+/// Sets a function that is called right before any file gets or loses its final name; nullptr:
+/// none. It may throw to prevent that. For the whole process; thread-safe.
 void setCommitGate(void (*gate)());
 
-/// Sets whether files, and their new names, are on the disk before commit() returns, so that they
-/// outlive a power failure. For the whole process; thread-safe. Off by default.
+/// Sets whether files and their new names are on the disk before commit() returns, so that both
+/// survive a power failure. For the whole process; thread-safe. Off by default.
 void setSyncFiles(bool sync);
 
-/// Removes the temporary files of all AtomicFiles: for who ends the process without destroying
-/// them. May be called by a signal handler.
+/// Removes all AtomicFiles' temporary files, for ending without destructors or in signal handlers.
 void removeTemporaryFiles() noexcept;
 
 }  // namespace deltasplat

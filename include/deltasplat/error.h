@@ -7,10 +7,10 @@
 
 namespace deltasplat {
 
-/// What kind of thing went wrong. The numbers have no meaning, but for not being 0, with which a
-/// program would say that all went well: what it ends with is its own choice.
+/// The kind of failure. The numbers mean nothing, except that none is 0, the exit status of a
+/// success. Programs choose their own exit status.
 enum class ErrorCode {
-    kFailed = 1,  ///< failed while working
+    kFailed = 1,
     kUsage,       ///< an option or an argument is wrong
     kInput,       ///< an input cannot be read or is invalid
     kOutput,      ///< an output cannot be written
@@ -26,13 +26,13 @@ inline std::string gotExpected(std::string_view where, std::string_view got,
 }
 
 /// The one exception the library throws on purpose. `what()` is one line without a final full stop:
-/// `<file or option>: got X; expected Y`. Here and in warnings and notes an option is named by the
-/// field or parameter that holds it, in backquotes, so that a program can put its own name there:
+/// `<file or option>: got X; expected Y`. Here and in warnings and notes an option is named by its
+/// field or parameter, in backquotes, so that a program can put its own name there:
 /// "`tolerance.value`: got -1; expected a number >= 0".
 class Error : public std::runtime_error {
   public:
     Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
-    /// As gotExpected says it.
+    /// Composes the message with gotExpected.
     Error(ErrorCode code, std::string_view where, std::string_view got, std::string_view expected)
         : Error(code, gotExpected(where, got, expected)) {}
     ErrorCode code() const noexcept { return code_; }

@@ -11,21 +11,21 @@
 
 namespace deltasplat {
 
-/// How far away solid things are in every pixel of a picture: what lies behind is not seen.
+/// Depth per pixel of a picture of the solid objects that hide everything behind them.
 struct DepthImage {
     glm::ivec2 size{0};
-    /// [height][width], from the top: depths as DeepSample has them; infinite where nothing is.
+    /// [height][width], rows top to bottom: depths as in DeepSample; infinite where no object is.
     std::vector<float> depths;
 };
 
-/// Reads the channel Z of an .exr, else depth, else the .Z of a layer called depth (as
-/// ViewLayer.Depth.Z; all in any case), else the only one there is. Depths of 0 and below, NaN and
-/// those from 1e10 on stand for nothing, the first two with a warning.
-/// @throw Error(kInput) if the file is none, or has no such channel
+/// Reads the channel Z of an .exr, else depth, else .Z of a layer called depth (such as
+/// ViewLayer.Depth.Z), names in any case, else the only channel. Depths of 0 and below, NaN and
+/// depths from 1e10 on stand for no object, the first two with a warning.
+/// @throw Error(kInput) if the file is no .exr, or has no such channel
 DepthImage readDepthImage(const std::filesystem::path& file, const Listener& listener = {});
 
-/// Returns what is seen of a deep picture before solid things: samples behind these are left out,
-/// and those that lie in the way are cut.
+/// Returns the part of a deep picture that is visible before solid objects: samples behind an
+/// object are left out, and samples that reach behind it are cut.
 /// @throw Error(kUsage) if the pictures have different sizes
 Image holdOut(const DeepImage& deep, const DepthImage& solid);
 

@@ -13,9 +13,8 @@ std::vector<std::string> simdLevels();
 /// Returns the name of the level in use.
 std::string simdLevel();
 
-/// Makes every kernel run at the level `name` (any case), or at the best one for "auto". Pixels
-/// never depend on it; meant for tests and for measuring. Not thread-safe: call it before
-/// rendering.
+/// Makes every kernel run at the level `name` (any case), or at the best one for "auto"; pixels
+/// stay the same. For tests and measurements. Not thread-safe: call it before rendering.
 /// @throw Error(kUsage) if the machine does not have that level
 void setSimdLevel(const std::string& name);
 

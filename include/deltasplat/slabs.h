@@ -16,19 +16,18 @@
 
 namespace deltasplat {
 
-/// The light of one slab of a picture, on the base plane of its region: plain numbers, which may be
-/// sent from one process to another.
+/// The light of one slab of a picture, on its region's base plane: numbers for any process.
 struct SlabLayer {
     int slab = 0;       ///< number of the slab, 0..SlabPicture::slabs() - 1
     glm::ivec2 min{0};  ///< pixels [min, max) of the base plane
     glm::ivec2 max{0};
-    int channels = 4;  ///< 4: premultiplied RGBA; 1: opacity, where all that is seen has one colour
+    int channels = 4;  ///< 4: premultiplied RGBA; 1: opacity, if everything seen has one colour
     std::vector<float> values;      ///< [row][column][channels]
     std::vector<glm::ivec2> spans;  ///< [row]: columns [x, y) outside of which a row is zero
 };
 
-/// A picture that is rendered slab by slab: by whoever has time, here or in another process that
-/// has prepared the same scene. Its pixels are those of PreparedScene::render, bit for bit.
+/// A picture that is rendered slab by slab, here or in other processes that have prepared the same
+/// scene. Its pixels are those of PreparedScene::render, bit for bit.
 class SlabPicture {
   public:
     /// @throw as PreparedScene::render; Error(kUsage) for a mostJoined above 2
@@ -37,14 +36,14 @@ class SlabPicture {
     SlabPicture(SlabPicture&&) noexcept;
     SlabPicture& operator=(SlabPicture&&) noexcept;
 
-    /// How many slabs there are that something may be seen of; from an eye those of one region
-    /// after the other. Within a region they are numbered from the front on.
+    /// Returns the number of slabs that may be visible. Within a region slabs are numbered from the
+    /// front; from an eye, regions follow each other.
     int slabs() const;
-    /// Renders a slab. Thread-safe; multi-threaded itself.
+    /// Renders a slab. Thread-safe and multi-threaded.
     /// @throw Error(kUsage) if there is no such slab; whatever `listener.progress` throws
     SlabLayer render(int slab, const Listener& listener = {}) const;
-    /// Puts layers together.
-    /// @param layers  of all slabs, in any order
+    /// Puts the layers of all slabs together.
+    /// @param layers  in any order
     /// @throw Error(kUsage) if a layer is missing, is there twice or has another shape than this
     ///        picture's; Error(kFailed) if they do not fit into memory
     Picture fold(std::span<const SlabLayer> layers) const;
@@ -56,8 +55,7 @@ class SlabPicture {
     std::unique_ptr<const Impl> impl_;
 };
 
-/// Some of so many parts of a picture, of about as much work each: those from `first` to `last`,
-/// counted from 1.
+/// Parts `first` to `last`, counted from 1, of a picture in `count` parts of about equal work.
 struct SlabShare {
     int first = 1;
     int last = 1;
@@ -69,39 +67,36 @@ inline constexpr int kMostSlabShares = 10'000;
 /// Returns "3/8" or "3-5/8".
 std::string shareText(const SlabShare& share);
 
-/// What a part says besides, by names.
+/// Notes in the file of a part: names and texts.
 using Notes = std::vector<std::pair<std::string, std::string>>;
 
 struct PartNotes {
-    Notes picture;  ///< the same in all parts of one
+    Notes picture;  ///< the same in all parts of one picture
     Notes part;
 };
 
-/// Renders a share of a picture's slabs, one after the other, into a file of their layers, packed
-/// without loss, which SlabFiles reads. The file appears under its final name only when it is
-/// whole. With more shares than there are slabs some parts hold none. Deterministic;
-/// multi-threaded.
-/// @throw Error(kUsage) for a share that there is not, Error(kOutput), whatever SlabPicture::render
-///        throws
+/// Renders a share of a picture's slabs, one after the other, into a file that SlabFiles reads:
+/// their layers, packed without loss. The file appears under its final name only when it is whole.
+/// With more shares than slabs some files hold no layer. Deterministic; multi-threaded.
+/// @throw Error(kUsage) for an impossible share, Error(kOutput), or as SlabPicture::render
 void writeSlabs(const SlabPicture& picture, const SlabShare& share, const PartNotes& notes,
                 const std::filesystem::path& file, const Listener& listener = {});
 
-/// Files of all slabs of a picture. They give the picture without its volume.
+/// Files of all slabs of a picture, which give the picture without its volume.
 class SlabFiles {
   public:
-    /// Reads what parts say of themselves.
     /// @param parts  files of all shares of one picture, in any order
     /// @throw Error(kInput) for a file that is no part, is cut short or damaged, belongs to another
-    ///        picture or is there twice, and for parts that are missing
+    ///        picture or is there twice, and for missing parts
     explicit SlabFiles(std::span<const std::filesystem::path> parts);
     ~SlabFiles();
     SlabFiles(SlabFiles&&) noexcept;
     SlabFiles& operator=(SlabFiles&&) noexcept;
 
     const Camera& camera() const;
-    /// Those of the picture, and of the part with the first share.
+    /// Returns the notes of the picture, and of the part with the first share.
     const PartNotes& notes() const;
-    /// Reads layers and puts them together; to be called once.
+    /// Reads the layers and puts them together; call it once.
     /// @throw Error(kInput) for layers that are cut short or damaged, Error(kFailed) if they do not
     ///        fit into memory, whatever `listener.progress` throws
     Picture fold(const Listener& listener = {});

@@ -5,10 +5,9 @@
 
 namespace deltasplat {
 
-/// Limits the number of threads that the library uses for what the calling thread asks of it, while
-/// this object lives. Of several the last made counts; they may end in any order. Other threads
-/// have limits of their own, or none; while there are any, the process has no more threads for all
-/// of this than the largest. Results never depend on it.
+/// Limits the threads for the calling thread's requests to the library, while this object lives.
+/// The last limit made counts; limits may end in any order. Each thread has its own limits, or
+/// none; all requests together never use more than the largest. Results never depend on it.
 class ThreadLimit {
   public:
     /// @param threads  at least 1, or 0 for all hardware threads
@@ -17,7 +16,7 @@ class ThreadLimit {
     ThreadLimit(const ThreadLimit&) = delete;
     ThreadLimit& operator=(const ThreadLimit&) = delete;
 
-    /// Returns how many threads 0 stands for: the cores of its affinity, or of its cgroup if fewer.
+    /// Returns the threads that 0 stands for: cores of the affinity, or of the cgroup if fewer.
     static int hardwareThreads();
 
     struct Impl;
@@ -26,7 +25,7 @@ class ThreadLimit {
     std::shared_ptr<Impl> impl_;
 };
 
-/// Returns how many threads the library would use now for what the calling thread asks of it.
+/// Returns how many threads the library would now use for the calling thread's requests.
 int threadCount();
 
 }  // namespace deltasplat

@@ -3,8 +3,7 @@
 
 namespace deltasplat {
 
-/// How far a voxel's value may be from its source's. Both 0: not at all; both given: neither may be
-/// exceeded. What is empty stays empty.
+/// Largest error of a voxel against its source, by both limits; both 0: exact. Empty stays empty.
 struct Tolerance {
     double relative = 0;  ///< share of the true value's magnitude, >= 0
     double value = 0;     ///< in data units, >= 0

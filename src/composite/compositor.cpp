@@ -26,7 +26,6 @@ std::size_t Compositor::composite(Sheets sheets, const SheetReading& shift, int 
     return count;
 }
 
-// Finds the runs of pixels that the sheets reach.
 void Compositor::findSpans(Sheets sheets, const SheetReading& shift, int firstRow, int lastRow,
                            bool straight, const SheetCover* cover, Layer& layer) {
     const Sheet& sheet = *sheets.front();
@@ -36,10 +35,9 @@ void Compositor::findSpans(Sheets sheets, const SheetReading& shift, int firstRo
     either_.resize(sheets.size() + 1);
     for (Rows& row : either_) row.resize(words_);
     spans_.clear();
-    // Rows of the sheet.
     const int begin = std::max(firstRow + shift.offset.y, 0);
     const int end = std::min(lastRow + shift.offset.y, sheet.layout().sizePixels.y - 1);
-    // The row before reads into the first one as well. Bit 0: that of the tile row before.
+    // The row before reads into the first row. Bit 0: row of the previous tile row.
     unsigned rows = 0;
     for (int tileRow = begin / kTilePixels; kTilePixels * tileRow <= end; ++tileRow) {
         rows >>= kTilePixels;
@@ -61,8 +59,8 @@ void Compositor::findSpans(Sheets sheets, const SheetReading& shift, int firstRo
     }
 }
 
-// Adds what row y of the sheets reaches: `row` of rows_ says where they are full, the next one
-// where the row behind it is. Read straight, it reaches no more than itself.
+// Adds spans for row y of the sheets: `row` of rows_ has its full tiles, the next one those of the
+// row behind. A straight reading reaches no further row.
 void Compositor::addSpans(const Sheet& sheet, const SheetReading& shift, int y, std::size_t row,
                           bool straight, Layer& layer) {
     for (std::size_t p = 0; p < rows_.size(); ++p) {
@@ -82,7 +80,7 @@ void Compositor::addSpans(const Sheet& sheet, const SheetReading& shift, int y, 
     std::optional<int> begin;
     int end = 0;
     forEachRun(all, [&](int firstTile, int lastTile) {
-        // The pixel before the first one reads into it as well.
+        // The pixel before a tile reads into it.
         const int first = kTilePixels * firstTile - (straight ? 0 : 1);
         end = kTilePixels * lastTile;
         if (!begin) begin = first;
@@ -98,7 +96,7 @@ void Compositor::addSpans(const Sheet& sheet, const SheetReading& shift, int y, 
     if (begin) layer.extend(layerRow, *begin - shift.offset.x, end - shift.offset.x);
 }
 
-// Cuts a span where other planes are full.
+// Cuts a run where other planes become full.
 void Compositor::addRun(int firstTile, int lastTile, bool straight, OverSpan span, int channels) {
     const int firstPixel = kTilePixels * lastTile - int(span.pixels);
     int begin = firstPixel;
@@ -113,7 +111,7 @@ void Compositor::addRun(int firstTile, int lastTile, bool straight, OverSpan spa
     for (int tile = firstTile + 1; tile < lastTile; ++tile) {
         const std::uint32_t next = planesAt(tile);
         if (next == planes) continue;
-        // The last pixel before a tile reads into it as well: it takes the planes of both.
+        // The last pixel before a tile reads into it, and takes the planes of both.
         const int edge = kTilePixels * tile;
         if (!straight) {
             const std::uint32_t both = planes | next;
@@ -127,7 +125,7 @@ void Compositor::addRun(int firstTile, int lastTile, bool straight, OverSpan spa
     emit(kTilePixels * lastTile, planes);
 }
 
-// Returns the planes that are full in a tile of the row in hand.
+// Returns the planes that are full in a tile of the current row.
 std::uint32_t Compositor::planesAt(int tile) const {
     std::uint32_t planes = 0;
     for (std::size_t p = 0; p < rows_.size(); ++p)
@@ -140,7 +138,7 @@ std::uint32_t Compositor::planesAt(int tile) const {
 // Viewing Transformation", 1994, perspective by slices that are scaled.
 namespace {
 
-// Pixels between two runs that are not worth an end and a beginning.
+// Longest gap that is composited rather than split.
 constexpr int kShortGap = 12;
 
 }  // namespace
@@ -167,7 +165,7 @@ std::size_t PerspectiveCompositor::composite(Sheets sheets, int slice, const She
     return pixels_;
 }
 
-// Of a box, the pixels that read rows and columns of tiles which may be other than zero.
+// Restricts a box to pixels that read tiles which may be other than zero.
 PlaneBox PerspectiveCompositor::seenBox(Sheets sheets, const SheetReading& reading,
                                         const PlaneBox& box, const SheetCover* cover) {
     if (box.empty()) return {};
@@ -190,7 +188,7 @@ PlaneBox PerspectiveCompositor::seenBox(Sheets sheets, const SheetReading& readi
     return {{x.x, y.x}, {x.y, y.y}};
 }
 
-// Looks at all rows of tiles in which any of the sheet rows [firstRow, lastRow) lies.
+// Looks at all rows of tiles with any of the sheet rows [firstRow, lastRow).
 void PerspectiveCompositor::findFull(Sheets sheets, int firstRow, int lastRow,
                                      const SheetCover* cover) {
     words_ = wordsOfRow(*sheets.front());
@@ -209,7 +207,6 @@ void PerspectiveCompositor::findFull(Sheets sheets, int firstRow, int lastRow,
         if (lastFull_ == 0) firstFull_ = kTilePixels * row + std::countr_zero(any);
         lastFull_ = kTilePixels * row + int(std::bit_width(any));
     }
-    // All rows together.
     seen_.assign(words_, 0);
     for (std::size_t i = 0; i < full_.size(); ++i) seen_[i % words_] |= full_[i];
 }
@@ -231,7 +228,7 @@ void PerspectiveCompositor::addRow(int y, Layer& layer) {
         const int from = tiles_[std::size_t(firstTile)].x;
         const int to = tiles_[std::size_t(lastTile - 1)].y;
         if (to <= from) return;
-        // What is nearly together is done together.
+        // Runs with short gaps are joined.
         if (from > last + kShortGap) {
             addRun({first, y}, last, layer);
             first = from;
@@ -248,7 +245,7 @@ void PerspectiveCompositor::findTiles(const SheetReading& reading, int tiles) {
         tiles_.push_back(readersOf(reading, 0, kTilePixels * tile, kTilePixels * (tile + 1), box_));
 }
 
-// Takes on pixels [first.x, last) of a row.
+// Adds pixels [first.x, last) of a row.
 void PerspectiveCompositor::addRun(glm::ivec2 first, int last, Layer& layer) {
     if (first.x >= last) return;
     layer.extend(first.y, first.x, last);
@@ -257,7 +254,7 @@ void PerspectiveCompositor::addRun(glm::ivec2 first, int last, Layer& layer) {
     const std::size_t firstOfRow = slice_.pitch * std::size_t(rows_.first[row]);
     for (int x = first.x; x < last;) {
         const auto column = std::size_t(x - box_.min.x);
-        // Written where it stays: a copy would wait for what has just been written.
+        // Built in place: a copy would wait for the writes.
         ScaledRun& run = runs_.emplace_back();
         run.place = firstOfRow + std::size_t(layer.channels * columns_.first[column]);
         run.rowWeights = rows_.of(row);
@@ -266,11 +263,11 @@ void PerspectiveCompositor::addRun(glm::ivec2 first, int last, Layer& layer) {
         run.pairWeights = columns_.pairs.empty() ? nullptr : &columns_.pairs[column];
         run.pixels = std::min(last - x, kMostScaled);
         run.layer = layer.pixel({x, first.y});
-        // The base plane is never so coarse that one pixel reads as many.
+        // The base plane is never so coarse that one pixel reads this many columns.
         while (run.pixels > 1 && run.columns(columns_.taps) > kMostScaledColumns) run.pixels /= 2;
         run.steps = stepsOf({x, first.y}, run.pixels);
         x += run.pixels;
-        // The next one's shares take their place.
+        // The next run reuses shares_.
         if (isCut_) flush();
     }
 }
@@ -280,7 +277,7 @@ void PerspectiveCompositor::flush() {
     runs_.clear();
 }
 
-// Returns for how many steps each pixel's opacity counts; null: for one.
+// Returns the steps that each pixel's opacity counts for; null: one.
 const float* PerspectiveCompositor::stepsOf(glm::ivec2 first, int pixels) {
     const float* steps = steps_ ? steps_->at(first) : nullptr;
     if (!isCut_) return steps;

@@ -19,8 +19,7 @@
 
 namespace deltasplat {
 
-/// Turns what a sheet knows of a row of tiles, a byte for each tile, into a row of bits for each of
-/// its eight rows of pixels, 64 tiles a word.
+/// Turns a sheet's row of tiles into a row of bits per pixel row, 64 tiles per word.
 /// @param rows   [kTilePixels][words], zeros
 /// @return bit y: whether row y has any
 inline unsigned findFullRows(const Sheet& sheet, int tileRow, std::size_t words,
@@ -41,7 +40,7 @@ inline unsigned findFullRows(const Sheet& sheet, int tileRow, std::size_t words,
     return unsigned(any | any >> 8) & 0xFF;
 }
 
-/// Returns how many words of 64 tiles a row of a sheet has.
+/// Returns the words of 64 tiles per row of a sheet.
 inline std::size_t wordsOfRow(const Sheet& sheet) {
     return (sheet.fullRows(0).size() + 63) / 64;
 }
@@ -49,7 +48,7 @@ inline std::size_t wordsOfRow(const Sheet& sheet) {
 /// Calls emit(first, last) for every run of set bits [first, last) in a row of words.
 template <typename Emit>
 void forEachRun(std::span<const std::uint64_t> words, const Emit& emit) {
-    int open = -1;  // where a run began that reaches up to the word in hand
+    int open = -1;  // start of a run that reaches the current word
     for (std::size_t i = 0; i < words.size(); ++i) {
         const int base = int(64 * i);
         std::uint64_t word = words[i];
@@ -69,26 +68,24 @@ void forEachRun(std::span<const std::uint64_t> words, const Emit& emit) {
     if (open >= 0) emit(open, int(64 * words.size()));
 }
 
-/// Composites sheets into layers. Holds what that takes, to be used for one slice after the other;
-/// not thread-safe.
+/// Composites sheets into layers, slice after slice. Not thread-safe.
 class Compositor {
   public:
-    /// Sheets of a slice, one for each plane of colours, all of one layout.
+    /// Sheets of a slice, one per plane of colours, all of one layout.
     using Sheets = std::span<const Sheet* const>;
 
-    /// @param scales  what one unit of each sheet is worth in each channel
+    /// @param scales  value of one unit of each sheet, per channel
     explicit Compositor(std::vector<glm::vec4> scales) : scales_(std::move(scales)) {}
 
     /// Composites one slice: the sum of its sheets, read bilinearly at the layer's pixels, goes
-    /// behind what the layer holds. Only what the sheets' full rows reach is touched; of that, rows
-    /// [firstRow, lastRow) of the base plane, which the layer has.
-    /// @param cover  of the slice: what it hides is left out; null: nothing is hidden
-    /// @return       how many pixels of the layer it went over
+    /// behind the layer. Only rows [firstRow, lastRow) of the base plane, which the layer has, are
+    /// touched, where the sheets' full rows reach.
+    /// @param cover  of the slice: hidden tiles are left out; null: none are
+    /// @return       the number of pixels composited
     std::size_t composite(Sheets sheets, const SheetReading& shift, int firstRow, int lastRow,
                           const SheetCover* cover, Layer& layer);
 
   private:
-    // Rows of tiles as bits, 64 tiles a word.
     using Rows = std::vector<std::uint64_t>;
 
     void findSpans(Sheets sheets, const SheetReading& shift, int firstRow, int lastRow,
@@ -100,31 +97,27 @@ class Compositor {
 
     std::vector<glm::vec4> scales_;
     std::size_t words_ = 0;  // a row
-    /// [plane][9][words_]: which tiles are full in the last row of the tile row before, and in the
-    /// eight rows of the one in hand.
+    /// [plane][9][words_]: full tiles in the previous tile row's last row, and the current one's.
     std::vector<Rows> rows_;
-    std::vector<Rows> either_;  // [plane][words_], and of all planes together behind them
+    std::vector<Rows> either_;  // [plane][words_], then all planes together
     std::vector<OverSpan> spans_;
 };
 
-/// Composites sheets into layers where lines of sight come from an eye: what Compositor does in
-/// parallel projection. Holds what that takes, to be used for one slice after the other; not
-/// thread-safe.
+/// Composites sheets into layers, slice after slice, as seen from an eye. Not thread-safe.
 class PerspectiveCompositor {
   public:
     using Sheets = std::span<const Sheet* const>;
 
-    /// @param scales  what one unit of each sheet is worth in each channel
-    /// @param steps   how long the way through a slice is; of layers of opacity alone, whose
-    /// lengths are made up for once they are merged, null
+    /// @param scales  value of one unit of each sheet, per channel
+    /// @param steps   length of the way through a slice; null: opacities, corrected after merging
     PerspectiveCompositor(const BasePlane& plane, std::vector<glm::vec4> scales,
                           const StepLengths* steps)
         : plane_(plane), scales_(std::move(scales)), steps_(steps) {}
 
-    /// Composites what the base plane's pixels of a box, which the layer has, see of one slice. A
-    /// slice that the eye or the near plane cuts counts as far as it lies beyond.
-    /// @param cover  of the slice: what it hides is left out; null: nothing is hidden
-    /// @return       how many pixels of the layer it went over
+    /// Composites one slice as seen by the base plane's pixels of a box, which the layer has. A
+    /// slice cut by the eye or the near plane counts beyond the cut.
+    /// @param cover  of the slice: hidden tiles are left out; null: none are
+    /// @return       the number of pixels composited
     std::size_t composite(Sheets sheets, int slice, const SheetReading& reading,
                           const PlaneBox& box, const SheetCover* cover, Layer& layer);
 
@@ -141,22 +134,23 @@ class PerspectiveCompositor {
     const BasePlane& plane_;
     std::vector<glm::vec4> scales_;
     const StepLengths* steps_;
-    int number_ = 0;                   // of the slice in hand
-    bool isCut_ = false;               // it is, by the eye or the near plane
-    PlaneBox box_;                     // of it
+    int number_ = 0;                   // of the current slice
+    bool isCut_ = false;               // by the eye or the near plane
+    PlaneBox box_;                     // of the slice
     ScaledTaps columns_;               // of the box
     ScaledTaps rows_;                  // likewise
-    std::vector<glm::ivec2> tiles_;    // [tiles]: columns [x, y) of the box that read each
-    std::size_t words_ = 0;            // of 64 tiles, a row
-    int firstTileRow_ = 0;             // that full_ begins with
-    int firstFull_ = 0;                // of the sheet rows that may be other than zero
-    int lastFull_ = 0;                 // likewise, behind the last
-    std::vector<std::uint64_t> full_;  // [sheet row][words_]: which tiles are full
-    std::vector<std::uint64_t> seen_;  // [words_]: of the rows that a base plane row reads
+    std::vector<glm::ivec2> tiles_;    // [tiles]: columns [x, y) of the box that read it
+    std::size_t words_ = 0;            // words of 64 tiles per row
+    int firstTileRow_ = 0;             // first tile row of full_
+    int firstFull_ = 0;                // first sheet row that may be other than zero
+    int lastFull_ = 0;                 // behind the last such row
+    std::vector<std::uint64_t> full_;  // [sheet row][words_]: full tiles
+    std::vector<std::uint64_t>
+        seen_;  // [words_]: full tiles of the rows that a base plane row reads
     ScaledSlice slice_{};
-    std::vector<ScaledRun> runs_;  // that wait to be composited
-    std::size_t pixels_ = 0;       // of the slice in hand, that are composited
-    std::vector<float> shares_;    // steps of a run through a slice that is cut
+    std::vector<ScaledRun> runs_;  // still to be composited
+    std::size_t pixels_ = 0;       // composited in the current slice
+    std::vector<float> shares_;    // steps of a run through a cut slice
 };
 
 }  // namespace deltasplat

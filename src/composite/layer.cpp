@@ -15,7 +15,6 @@ void Layer::setBox(const PlaneBox& planeBox) {
     spans.assign(std::size_t(box.size().y), kNothing);
 }
 
-// Makes columns [first, last) of the box zero, in a row.
 void Layer::fillZero(int y, int first, int last) {
     if (first >= last) return;
     std::fill_n(pixel({box.min.x + first, y}), std::size_t(channels) * (last - first), 0.0f);
@@ -69,7 +68,7 @@ Layer LayerFold::take(const PlaneBox& box) {
     Layer layer({}, channels_, *front_.values.get_allocator().resource());
     if (idle_.empty()) {
         lock.unlock();
-        // Slabs of the same length reach boxes that differ by a pixel.
+        // Boxes of slabs of one length differ by a pixel.
         const glm::ivec2 size = box.size() + 1;
         layer.values.reserve(std::size_t(channels_) * size.x * size.y);
     } else {
@@ -95,7 +94,7 @@ void LayerFold::addFront() {
 void LayerFold::add(std::size_t number, Layer layer) {
     std::unique_lock lock(mutex_);
     done_[number] = std::move(layer);
-    // The last ones are merged by all threads together.
+    // All threads together merge the last layers.
     if (hasFront_ && !merging_ && taken_ < done_.size()) mergeReady(lock);
 }
 
@@ -117,7 +116,7 @@ void LayerFold::mergeReady(std::unique_lock<std::mutex>& lock) {
     merging_ = false;
 }
 
-// Nobody else merges meanwhile.
+// Only one thread merges at a time.
 void LayerFold::findCovered(std::unique_lock<std::mutex>& lock) {
     CoveredCells cells = *covered_;
     lock.unlock();
@@ -132,7 +131,7 @@ void LayerFold::finishRow(int y) {
 
 namespace {
 
-// Of rows [first, last) of the base plane, the columns that none of them is sure to be zero in.
+// Returns the columns in which no base plane row of [first, last) is known to be zero.
 glm::ivec2 columnsOf(const Layer& layer, int first, int last) {
     if (first < layer.box.min.y || last > layer.box.max.y) return {0, 0};
     glm::ivec2 columns(0, layer.box.size().x);
@@ -176,11 +175,11 @@ bool addCovered(const Layer& layer, CoveredCells& cells) {
 
 namespace {
 
-// A look at a cell takes about as long as compositing two pixels. Looks that find something are
-// worth a thirtieth of that time, and those that find nothing get rarer and rarer.
-constexpr std::size_t kLeastBetween = 64;  // pixels a cell
+// Looking at a cell takes about as long as compositing two pixels. Successful looks may cost a
+// thirtieth of compositing; unsuccessful ones become rarer and rarer.
+constexpr std::size_t kLeastBetween = 64;  // pixels per cell
 constexpr std::size_t kMostBetween = 1024;
-// What is covered from now on grows slowly.
+// Cover for all later slices grows slowly.
 constexpr int kSlicesBetween = 8;
 
 }  // namespace

@@ -19,15 +19,15 @@
 
 namespace deltasplat {
 
-/// The composited light of one slab on the base plane: float `[row][width][channels]`, rows along
-/// u as those of sheets; premultiplied RGBA, or opacity alone where all that is seen has one
-/// colour. While it is made, a row has values in its span alone.
+/// The composited light of one slab on the base plane: float `[row][width][channels]`, rows along u
+/// as in sheets; premultiplied RGBA, or opacity only where everything seen has one colour. Until a
+/// row is finished, only its span has values.
 struct Layer {
     PlaneBox box;
     int channels;
     pmr::UnclearedVector<float> values;
 
-    /// [rows]: columns [x, y) of the box, outside of which a finished row is zero.
+    /// [rows]: columns [x, y) of the box; a finished row is zero outside.
     std::vector<glm::ivec2> spans;
 
     /// A finished layer, all zero.
@@ -39,19 +39,18 @@ struct Layer {
         for (int y = box.min.y; y < box.max.y; ++y) clearRest(y);
     }
 
-    /// Becomes a layer of a box, with empty spans, in the memory that it has.
+    /// Becomes a layer of a box, with empty spans, in its own memory.
     void setBox(const PlaneBox& planeBox);
-    /// Says that columns [first, last) of a row of the base plane may not be zero, and makes zero
-    /// what comes to its span by that.
+    /// Adds columns [first, last) to the span of a base plane row, and fills them with zeros.
     void extend(int y, int first, int last) {
         first -= box.min.x;
         last -= box.min.x;
         const glm::ivec2 span = spans[std::size_t(y - box.min.y)];
         if (first < span.x || last > span.y) widen(y, {first, last});
     }
-    /// Makes zero what lies outside of a row's span.
+    /// Fills a row with zeros outside its span.
     void clearRest(int y);
-    /// The same of all rows, on all threads.
+    /// Fills all rows on all threads.
     void clearRest();
     float* pixel(glm::ivec2 b) {
         const glm::ivec2 p = b - box.min;
@@ -65,7 +64,6 @@ struct Layer {
     void fillZero(int y, int first, int last);
 };
 
-/// Bytes that the values of a layer take.
 inline double layerBytes(const PlaneBox& box, int channels) {
     const glm::dvec2 size = box.size();
     return sizeof(float) * channels * size.x * size.y;
@@ -75,40 +73,36 @@ inline double layerBytes(const PlaneBox& box, int channels) {
 struct LayerRow {
     const float* values;  ///< [width][channels]
     int firstColumn;      ///< of the base plane
-    glm::ivec2 span;      ///< columns [x, y) outside of which it is zero
+    glm::ivec2 span;      ///< columns [x, y); zero outside
 };
 
 /// Puts row `y` behind a layer that covers it.
 void mergeRowBehind(Layer& front, const LayerRow& row, int y);
-/// Puts row `y` of a layer, if it has it, behind another layer that covers it.
+/// Puts row `y` of a layer, if it is there, behind another layer that covers it.
 void mergeRowBehind(Layer& front, const Layer& layer, int y);
 
-/// Puts layers behind a front one, in whatever order they are done: the order of the arithmetic is
-/// fixed by their numbers alone. As long as more are to come, layers are merged as soon as those in
-/// front of them are, so that few are in memory. Thread-safe but for finishRow().
+/// Puts layers behind a front one, whatever the order in which they get done: only their numbers
+/// fix the order of the arithmetic. While more are to come, a layer is merged as soon as those in
+/// front of it are, so that few are in memory. Thread-safe except finishRow().
 class LayerFold {
   public:
     /// @param count  layers to come, numbered from the front
-    /// @param front  what they are put behind, once addFront() is called; folds may share it if
-    /// their layers share no row
-    /// @param part   of the base plane, in which its layers lie
+    /// @param front  goes in front after addFront(); folds without common rows may share it
+    /// @param part   of the base plane, which holds the layers
     LayerFold(std::size_t count, Layer& front, const PlaneBox& part)
         : front_(front),
           channels_(front.channels),
           covered_(std::make_shared<const CoveredCells>(part)),
           done_(count) {}
 
-    /// Returns an empty layer. Call it once for each number.
+    /// Returns an empty layer. Call it once per number.
     Layer take(const PlaneBox& box);
-    /// Returns what is covered by the layers that are merged by now: whatever a later one has there
-    /// changes nothing.
+    /// Returns the cells covered by merged layers: later layers change nothing there.
     std::shared_ptr<const CoveredCells> covered();
-    /// Says that the front layer is finished, and may be written to from now on by others than who
-    /// made it. Call it once.
+    /// Says that the front layer is finished and may be changed. Call it once.
     void addFront();
-    /// Takes a finished layer back.
     void add(std::size_t number, Layer layer);
-    /// Merges row y of the layers that are left, when all have been added, the front one included.
+    /// Merges row y of all remaining layers, once all are added, the front one included.
     void finishRow(int y);
 
   private:
@@ -122,34 +116,32 @@ class LayerFold {
     std::vector<std::optional<Layer>> done_;  // [count]: not yet merged
     std::vector<Layer> idle_;
     std::size_t taken_ = 0;
-    std::size_t next_ = 0;  // the first that is not merged
+    std::size_t next_ = 0;  // first layer that is not merged
     bool hasFront_ = false;
     bool merging_ = false;
 };
 
-/// Adds the cells in which a layer is opaque everywhere, its opacity 1 to the last bit: whatever is
-/// put behind it there changes no bit, for it is multiplied by 0.
-/// @return whether there are any that were not covered
+/// Adds the cells where a layer is opaque, its opacity 1 to the last bit: layers behind change no
+/// bit there, because they are multiplied by 0.
+/// @return whether any cell is newly covered
 bool addCovered(const Layer& layer, CoveredCells& cells);
 
-/// What of the slices of a slab is covered and need not be made: by the slabs before it, and by the
-/// slab's own slices, from the front on. What is covered changes no bit of the picture
-/// (addCovered). To be asked for one slice after the other.
+/// Covered parts of a slab's slices, which need not be made: covered by slabs before, and by its
+/// own slices, front to back. They change no bit (addCovered). Ask slice after slice.
 class SlabCover {
   public:
-    /// @param before  what the slabs before cover
-    /// @param layer   the slab's own, whose rows of `before` nobody else changes; it must outlive
-    ///                this
+    /// @param before  cells covered by the slabs before
+    /// @param layer   the slab's own; must outlive this, and nobody else changes its rows of
+    ///                `before`
     SlabCover(const BasePlane& plane, int lastSlice, std::shared_ptr<const CoveredCells> before,
               const Layer& layer)
         : plane_(plane), lastSlice_(lastSlice), layer_(layer), cells_(std::move(before)) {}
 
-    /// Whether nothing has to be made.
     bool all() const { return cells_->all(); }
-    /// Returns what of the next slice has to be made; valid until the one behind it.
-    /// @param read  what the plane reads of it
+    /// Returns the needed part of the next slice; valid until the slice behind it.
+    /// @param read  pixels that the plane reads
     NeededPixels next(const SheetReading& reading, const SheetBox& read, const SheetLayout& layout);
-    /// Says over how many pixels of the layer compositing that slice went.
+    /// Adds the pixels composited for that slice.
     void add(std::size_t pixels) { pixels_ += pixels; }
 
   private:
@@ -160,7 +152,7 @@ class SlabCover {
     const Layer& layer_;
     std::shared_ptr<const CoveredCells> cells_;
     std::size_t pixels_ = 0;     // composited since the last look
-    std::size_t between_ = 128;  // pixels a cell, from a look to the next
+    std::size_t between_ = 128;  // pixels per cell between two looks
     int slices_ = 0;             // since fromNowOn_ was found
     SheetCover ofSlice_;
     SheetCover fromNowOn_;

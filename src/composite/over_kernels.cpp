@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compositor's inner loops, compiled once for each SIMD level.
+// The compositor's inner loops, compiled once per SIMD level.
 #include "composite/over_kernels.h"
 
 #include <bit>
@@ -18,13 +18,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using FullTag = hn::ScalableTag<float>;
 
-// One pixel: what is left at a span's end.
+// One pixel, for the rest of a span.
 template <int kChannels>
 using RestTag = hn::FixedTag<float, kChannels == 4 ? 4 : 1>;
 
-// Pixels that are read at a time, so that they stay in the first-level cache.
+// Pixels read at a time, so that they stay in the first-level cache.
 constexpr std::size_t kStretch = 128;
-// A span of no more pixels is over before what it stores can be loaded again.
+// A span this short ends before its stores can be loaded again.
 constexpr std::size_t kShort = 32;
 
 template <class Tag>
@@ -50,19 +50,19 @@ HWY_INLINE V opacityOf(V color) {
     }
 }
 
-// Puts as many values as the tag has lanes for behind a layer.
+// Puts one vector of values behind a layer.
 template <int kChannels, class Tag, class V>
 HWY_INLINE void over(Tag tag, V color, float* layer) {
     auto front = hn::LoadU(tag, layer);
 #if HWY_ARCH_X86 && HWY_TARGET != HWY_EMU128
-    // GCC would load it twice, as an operand of what it goes into.
+    // Keeps GCC from loading it twice, as an operand.
     asm("" : "+v"(front.raw));
 #endif
     const auto clear = hn::Sub(hn::Set(tag, 1.0f), opacityOf<kChannels>(front));
     hn::StoreU(hn::Add(front, hn::Mul(clear, color)), tag, layer);
 }
 
-// Calls use(tag, i) for whole vectors of `count` values, then for what is left.
+// Calls use(tag, i) for whole vectors of `count` values, then for the rest.
 template <int kChannels, typename Use>
 HWY_INLINE void forVectors(std::size_t count, const Use& use) {
     const FullTag full;
@@ -86,7 +86,7 @@ struct PlaneRun {
     const glm::vec4& nextWeight;
 };
 
-// Reads along the columns.
+// Interpolates along columns.
 template <int kChannels, class Tag>
 HWY_INLINE hn::Vec<Tag> readColumn(Tag tag, const PlaneRun& run, std::size_t i) {
     const auto here =
@@ -96,7 +96,7 @@ HWY_INLINE hn::Vec<Tag> readColumn(Tag tag, const PlaneRun& run, std::size_t i) 
     return hn::Add(here, next);
 }
 
-// Sheet pixels fall on the layer's.
+// For sheet pixels that coincide with the layer's.
 template <int kChannels>
 HWY_INLINE void overStraight(const PlaneRun& run, float* layer, std::size_t pixels) {
     forVectors<kChannels>(kChannels * pixels, [&](auto tag, std::size_t i) {
@@ -106,7 +106,7 @@ HWY_INLINE void overStraight(const PlaneRun& run, float* layer, std::size_t pixe
     });
 }
 
-// Reads columns that are ready along the rows.
+// Interpolates finished columns along rows.
 template <int kChannels>
 HWY_INLINE void overColumns(const float* columns, const OverWeights& weights, float* layer,
                             std::size_t pixels) {
@@ -118,7 +118,7 @@ HWY_INLINE void overColumns(const float* columns, const OverWeights& weights, fl
     });
 }
 
-// Reads along the columns first, then along the rows.
+// Interpolates along columns first, then along rows.
 template <int kChannels>
 HWY_INLINE void overStretch(const PlaneRun& run, const OverWeights& weights, float* layer,
                             std::size_t pixels) {
@@ -129,7 +129,7 @@ HWY_INLINE void overStretch(const PlaneRun& run, const OverWeights& weights, flo
     overColumns<kChannels>(columns, weights, layer, pixels);
 }
 
-// The same arithmetic, each column read twice and nothing stored on the way.
+// Gives the same arithmetic, reading each column twice and storing nothing.
 template <int kChannels>
 HWY_INLINE void overShort(const PlaneRun& run, const OverWeights& weights, float* layer,
                           std::size_t pixels) {
@@ -142,7 +142,7 @@ HWY_INLINE void overShort(const PlaneRun& run, const OverWeights& weights, float
     });
 }
 
-// Adds up the columns of several planes first.
+// Sums the columns of several planes first.
 template <int kChannels>
 void overPlanes(const OverSpan& span, const OverSheets& sheets, const OverWeights& weights) {
     HWY_ALIGN float columns[(kStretch + 1) * kChannels];
@@ -151,7 +151,7 @@ void overPlanes(const OverSpan& span, const OverSheets& sheets, const OverWeight
         const PlaneRun run(span, sheets, weights, std::countr_zero(rest));
         const bool first = rest == span.planes;
         forVectors<kChannels>(kChannels * (span.pixels + behind), [&](auto tag, std::size_t i) {
-            // Straight, the next row has no weight.
+            // A straight reading gives the next row no weight.
             const auto column = weights.straight
                                     ? hn::Mul(readSheet(tag, run.row + i),
                                               loadScale<kChannels>(tag, run.thisWeight))

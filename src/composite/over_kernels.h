@@ -13,10 +13,10 @@
 
 namespace deltasplat {
 
-/// What compositing one slice multiplies with.
+/// Factors for compositing one slice.
 struct OverWeights {
-    /// @param fraction  how far base plane pixels lie behind sheet pixels, 0..1 along each axis
-    /// @param scales    sheet units to RGBA, of each plane; of one channel only the last is used
+    /// @param fraction  distance of base plane pixels behind sheet pixels, 0..1 along each axis
+    /// @param scales    sheet units to RGBA, per plane; a single channel uses the last
     OverWeights(glm::vec2 fraction, std::span<const glm::vec4> scales, int channelCount)
         : straight(fraction == glm::vec2(0)),
           thisColumn(1 - fraction.x),
@@ -28,15 +28,15 @@ struct OverWeights {
         }
     }
 
-    bool straight;  ///< whether sheet pixels fall on the layer's
-    std::array<glm::vec4, ClassTable::kMaxPlanes> thisRow;  ///< of each plane
+    bool straight;  ///< whether sheet pixels coincide with the layer's
+    std::array<glm::vec4, ClassTable::kMaxPlanes> thisRow;  ///< per plane
     std::array<glm::vec4, ClassTable::kMaxPlanes> nextRow;
     float thisColumn;
     float nextColumn;
     int channels;  ///< of sheets and layer: 4 (RGBA) or 1 (opacity)
 };
 
-/// The sheets of a slice, one for each plane of colours.
+/// The sheets of a slice, one per plane of colours.
 struct OverSheets {
     std::array<const std::int32_t*, ClassTable::kMaxPlanes> pixels;  ///< `[row][pitch]`
     std::size_t pitch;  ///< integers from one row to the next
@@ -51,8 +51,8 @@ struct OverSpan {
 };
 
 /// Reads the sum of the sheets bilinearly and puts it behind the layer, for every span.
-/// Multiplications and additions are separate and per pixel, and planes are added from the first to
-/// the last, so that every SIMD level gives the same bits, whether planes of zeros are read or not.
+/// Multiplications and additions are separate and per pixel, and planes are added in order, so
+/// every SIMD level gives the same bits, whether planes of zeros are read or not.
 void overSpans(const std::vector<OverSpan>& spans, const OverSheets& sheets,
                const OverWeights& weights);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inner loops of perspective compositing, compiled once for each SIMD level.
+// The inner loops of perspective compositing, compiled once per SIMD level.
 #include "composite/scaled_kernels.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using PixelTag = hn::FixedTag<float, 4>;
 
-// Columns and pixels are worked on in whole vectors, which may reach over the last.
+// Spare columns and pixels for vectors that reach over the last.
 constexpr std::size_t kSpare = hn::MaxLanes(FullTag()) < 16 ? 16 : hn::MaxLanes(FullTag());
 
 template <int kChannels, class Tag>
@@ -32,10 +32,10 @@ HWY_INLINE auto loadScale(Tag tag, const glm::vec4& scale) {
     }
 }
 
-// Weighs the rows of every column; kRows is 0 where it is not known.
+// Weighs the rows of every column; kRows is 0 if unknown.
 template <int kChannels, int kRows>
 HWY_INLINE void sumSomeRows(const ScaledSlice& slice, const ScaledRun& run, float* columns) {
-    // No more than a sheet's rows have spare pixels for.
+    // Limited to a sheet row's spare pixels.
     const hn::CappedTag<float, kChannels == 4 ? 16 : 8> tag;
     const hn::RebindToSigned<decltype(tag)> whole;
     const std::size_t count = std::size_t{kChannels} * std::size_t(run.columns(slice.columnTaps));
@@ -61,13 +61,13 @@ HWY_INLINE void sumSomeRows(const ScaledSlice& slice, const ScaledRun& run, floa
             hn::StoreU(sum, tag, columns + i);
         }
     }
-    // What vectors of pixels read over the last column.
+    // Zeros that vectors of pixels read behind the last column.
     const std::size_t end = (count + hn::Lanes(tag) - 1) / hn::Lanes(tag) * hn::Lanes(tag);
     std::fill_n(columns + end, 2 * kSpare, 0.0f);
 }
 
-// Weighs what lanes have of two neighbouring columns.
-// @param from  the lane of the first column that each takes its values from
+// Interpolates two neighbouring columns per lane.
+// @param from  the lane of the first column for each result
 template <class Indices>
 HWY_INLINE Vector weighPair(const float* column, std::size_t channels, Indices from,
                             Vector weight) {
@@ -77,8 +77,8 @@ HWY_INLINE Vector weighPair(const float* column, std::size_t channels, Indices f
     return hn::Add(hn::Mul(here, weight), hn::Mul(next, hn::Sub(constant(1), weight)));
 }
 
-// Weighs two neighbouring columns for every pixel, of one channel. As columns lie no closer than
-// pixels do, those of a vector of pixels lie within a vector.
+// Interpolates two neighbouring columns for every pixel, of one channel. Columns are not closer
+// than pixels, so a vector of pixels reads from one vector of columns.
 HWY_INLINE void sumColumnPairs(const ScaledRun& run, const float* columns, float* opacities) {
     const FullTag tag;
     const hn::RebindToSigned<FullTag> whole;
@@ -92,8 +92,7 @@ HWY_INLINE void sumColumnPairs(const ScaledRun& run, const float* columns, float
     }
 }
 
-// How what a vector holds of as many pixels as it has lanes goes to vectors of their colours: made
-// once for many runs.
+// Lane numbers that spread pixels' values over vectors of their colours, for many runs.
 struct ColorLanes {
     static constexpr std::size_t kMost = hn::MaxLanes(FullTag());
     using Indices = decltype(hn::SetTableIndices(FullTag(), static_cast<std::int32_t*>(nullptr)));
@@ -111,13 +110,13 @@ struct ColorLanes {
         channel = hn::Load(hn::RebindToSigned<FullTag>(), lane);
     }
 
-    Indices pixelOf[4];  // [vector]: whose colour each lane has
+    Indices pixelOf[4];  // [vector]: pixel of each lane
     hn::Vec<hn::RebindToSigned<FullTag>> channel;
 };
 
-// Colours of as many pixels as a vector has lanes, clear at first.
+// Colours of a vector's lanes of pixels, initially clear.
 struct FourColors {
-    // Written out, as the compiler's own would be for another target.
+    // A compiler-made constructor would be for another target.
     HWY_INLINE FourColors() {
         for (Vector& color : of) color = hn::Zero(FullTag());
     }
@@ -126,14 +125,14 @@ struct FourColors {
 
     Vector opacities() const {
         const FullTag tag;
-        // Every second of every second.
+        // Every fourth: the opacities.
         return hn::ConcatOdd(tag, hn::ConcatOdd(tag, of[3], of[2]),
                              hn::ConcatOdd(tag, of[1], of[0]));
     }
 };
 
-// Weighs two neighbouring columns for the pixels from x on, as many as so many vectors have. As
-// columns lie no closer than pixels do, those of a vector lie within a vector.
+// Interpolates two neighbouring columns for the pixels of `vectors` vectors from x on. Columns are
+// not closer than pixels, so a vector of pixels reads from one vector of columns.
 HWY_INLINE FourColors pairColors(const ScaledRun& run, const float* columns,
                                  const ColorLanes& lanes, std::size_t x, std::size_t vectors) {
     const FullTag tag;
@@ -155,7 +154,6 @@ HWY_INLINE FourColors pairColors(const ScaledRun& run, const float* columns,
     return colors;
 }
 
-// Weighs the columns of every pixel.
 template <int kChannels>
 HWY_INLINE void sumColumns(const ScaledRun& run, int taps, const float* columns, float* colors) {
     const std::int32_t* first = run.first;
@@ -177,7 +175,7 @@ HWY_INLINE void sumColumns(const ScaledRun& run, int taps, const float* columns,
     }
 }
 
-// As many values as the tag has lanes.
+// Puts one vector of values behind a layer.
 template <class Tag>
 HWY_INLINE void overColors(Tag tag, hn::Vec<Tag> color, float* layer) {
     const auto front = hn::LoadU(tag, layer);
@@ -185,7 +183,7 @@ HWY_INLINE void overColors(Tag tag, hn::Vec<Tag> color, float* layer) {
     hn::StoreU(hn::Add(front, hn::Mul(clear, color)), tag, layer);
 }
 
-// Light and opacity grow with steps.
+// Scales light and opacity to steps.
 // @param steps  of the first pixel
 HWY_INLINE void grow(const ColorLanes& lanes, const float* steps, FourColors& colors) {
     const auto growth = growthOfSteps(colors.opacities(), hn::LoadU(FullTag(), steps));
@@ -193,8 +191,8 @@ HWY_INLINE void grow(const ColorLanes& lanes, const float* steps, FourColors& co
         colors.of[n] = hn::Mul(colors.of[n], hn::TableLookupLanes(growth, lanes.pixelOf[n]));
 }
 
-// Puts colours behind the layer for all pixels of a run.
-// @param colorsAt  colorsAt(x, vectors): of the pixels from x on, so many vectors, others zero
+// Puts the colours of all pixels of a run behind the layer.
+// @param colorsAt  colorsAt(x, vectors): this many vectors from pixel x on, others zero
 template <class ColorsAt>
 HWY_INLINE void overAll(const ScaledRun& run, const ColorLanes& lanes, const ColorsAt& colorsAt) {
     const FullTag tag;
@@ -312,13 +310,13 @@ void ScaledTaps::set(double start, double scale, int firstPixel, int pixels, con
     pairs.clear();
     for (int i = 0; i < pixels; ++i) {
         const double place = start + scale * (firstPixel + i);
-        // The first sheet pixel that a tent around the place does not leave out.
+        // The first sheet pixel inside a tent around the place.
         const double lowest = std::floor(place - reach) + 1;
         const double least = part.origin;
         const int begin = int(std::clamp(lowest, least, least + (part.size - taps)));
         first[std::size_t(i)] = begin - part.origin;
         float* weight = &weights[std::size_t(i) * std::size_t(taps)];
-        // All of the tent counts, also what lies outside of the sheet, where nothing is.
+        // The sum includes the tent outside the sheet, where everything is zero.
         double sum = 0;
         for (double at = lowest; at < place + reach; ++at) sum += 1 - std::abs(at - place) / reach;
         for (int tap = 0; tap < taps; ++tap) {
@@ -328,7 +326,6 @@ void ScaledTaps::set(double start, double scale, int firstPixel, int pixels, con
     }
 }
 
-// Of two neighbours.
 void ScaledTaps::setBetween(double start, double scale, int firstPixel, const Part& part) {
     const double least = part.origin;
     const double most = least + (part.size - 2);
@@ -336,11 +333,11 @@ void ScaledTaps::setBetween(double start, double scale, int firstPixel, const Pa
     for (std::size_t i = 0; i < first.size(); ++i) {
         const double place = start + scale * (firstPixel + int(i));
         double begin = std::min(std::max(std::floor(place), least), most);
-        // Rounding of places must not take two steps at once, which no scale up to 1 does.
+        // A scale up to 1 never takes two steps at once; rounding must not either.
         if (i > 0) begin = std::min(begin, least + first[i - 1] + 1);
         const double behind = place - begin;
         first[i] = int(begin) - part.origin;
-        // Beyond the sheet's edge, where it is zero, it does not matter what is read.
+        // Beyond the sheet's edge everything read is zero.
         pairs[i] = float(std::clamp(1 - behind, 0.0, 1.0));
         weights[2 * i] = pairs[i];
         weights[2 * i + 1] = 1 - pairs[i];

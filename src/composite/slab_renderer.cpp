@@ -31,7 +31,6 @@ std::vector<SeenSlab> seenSlabs(const SlabInput& input) {
 
 namespace {
 
-// All of a slab that is seen.
 SlabRun wholeRun(const SeenSlab& seen) {
     return {seen.firstSlice, seen.lastSlice};
 }
@@ -86,7 +85,7 @@ void SlabRenderer::run() {
     const std::size_t pieces = strips_.size() * seen_.size();
     const auto workers = std::min<std::size_t>(std::size_t(threadCount()), pieces);
     parallelFor(workers, [&](std::size_t) {
-        // Whoever comes too late needs none.
+        // Latecomers need none.
         std::optional<Splatter> splatter;
         Strip* own = nullptr;
         while (const std::optional<Piece> piece = takePiece(own)) {
@@ -96,8 +95,7 @@ void SlabRenderer::run() {
     });
 }
 
-// Who has a strip for their own knows at each slab what the slabs before it cover. When none is
-// left, the others' are shared.
+// A strip's own thread knows at each slab what slabs before cover. Others share strips.
 std::optional<SlabRenderer::Piece> SlabRenderer::takePiece(Strip*& own) {
     const std::lock_guard lock(mutex_);
     const auto isLeft = [&](const Strip& strip) { return strip.next < seen_.size(); };
@@ -125,11 +123,10 @@ Layer SlabRenderer::merge() {
     return std::move(merged_);
 }
 
-// Into how many strips rows of the base plane are cut: enough pieces for every thread to take some,
-// and enough for what a slice of a strip touches of sheet and layer to stay in a second-level
-// cache; but not so many that strips get much smaller than the rows at their edges, which belong to
-// two. If all of sheet and layer hardly overflow that cache, such rows cost more than they help; no
-// strip has more of both than that, for each thread clears its part of the sheet.
+// Number of strips of base plane rows. Every thread gets several pieces, and a strip's slice of
+// sheet and layer fits into a second-level cache; but strips are not much smaller than the rows at
+// their edges, which two strips work on. If sheet and layer hardly overflow that cache, such rows
+// cost too much. No strip has more of both, as each thread clears its part of the sheet.
 int SlabRenderer::stripCount() const {
     constexpr std::size_t kPiecesPerThread = 4;
     constexpr int kLeastRows = 48;
@@ -151,7 +148,7 @@ int SlabRenderer::stripCount() const {
                       std::max(1, rows / std::max(kLeastRows, travel())));
 }
 
-// How many pixels a slice touches of its sheet, in the mean of all words that are seen.
+// Sheet pixels that a slice touches, on average over all visible words.
 double SlabRenderer::pixelsOfSlice() const {
     if (input_.splat.stampEmptyVoxels) return std::numeric_limits<double>::infinity();
     double words = 0;
@@ -166,8 +163,7 @@ double SlabRenderer::pixelsOfSlice() const {
     return edge * edge * weighted / words;
 }
 
-// How many rows a strip moves along the sheet in a slab of changes: all that it comes to is looked
-// at by each strip anew.
+// Rows of the sheet passed by a strip in a slab of changes: each strip looks at all of them.
 int SlabRenderer::travel() const {
     if (!input_.plane.isParallel()) return 0;
     int rows = 0;
@@ -181,15 +177,14 @@ int SlabRenderer::travel() const {
     return rows;
 }
 
-// How much there is to do in each row, in places of equal chance among all words: those of the
-// slices that are seen, where the base plane reads them.
+// Work per row, from evenly sampled words of visible slices, where the base plane reads them.
 std::vector<double> SlabRenderer::workOfRows() const {
     constexpr std::size_t kSamples = 1024;
-    // Of what a row with a fair share of the words costs, one without any.
+    // Work of a row without words, relative to one with a fair share.
     constexpr double kEmptyRow = 0.1;
     const std::size_t step = std::max<std::size_t>(1, input_.splat.deltas.words.size() / kSamples);
     const int first = reach_.min.y;
-    std::vector<double> work(std::size_t(reach_.size().y) + 1);  // by how much each has more
+    std::vector<double> work(std::size_t(reach_.size().y) + 1);  // growth from row to row
     double all = 0;
     std::size_t next = 0;
     for (const SeenSlab& seen : seen_) {
@@ -216,10 +211,9 @@ std::vector<double> SlabRenderer::workOfRows() const {
     return work;
 }
 
-// The rows that strips begin at, and the last one's end. Several threads get strips of the same
-// work, as far as strips do not get so low that most of their rows lie at edges. Where each thread
-// takes many, work evens out by itself, and all strips are as high: of the same work, they would be
-// lowest, and have most rows at edges, where there is most to do.
+// Returns the first rows of strips, and the last one's end. Several threads get strips of equal
+// work, unless most rows would lie at edges. With many strips per thread, work evens out, and
+// strips are equally high: busy strips of equal work would be low, most of their rows at edges.
 std::vector<int> SlabRenderer::edgesOfStrips() const {
     constexpr int kManyForThread = 8;
     const int leastRows = std::max(32, travel());
@@ -235,7 +229,7 @@ std::vector<int> SlabRenderer::edgesOfStrips() const {
     double left = std::accumulate(work.begin(), work.end(), 0.0);
     int row = first;
     for (int i = 0; i + 1 < count; ++i) {
-        // Those behind need their rows as well.
+        // Leaves the strips behind their rows.
         const int last = end - leastRows * (count - 1 - i);
         const int least = std::min(row + leastRows, last);
         const double wanted = left / (count - i);
@@ -252,7 +246,7 @@ void SlabRenderer::cutIntoStrips() {
     const std::vector<int> edges = edgesOfStrips();
     for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
         const PlaneBox part{{reach_.min.x, edges[i]}, {reach_.max.x, edges[i + 1]}};
-        // The front slab's is the merged one, unless something lies before it.
+        // The front slab renders into the merged layer, unless something lies before it.
         const std::size_t layers = seen_.size() - (hasFront_ ? 0 : 1);
         strips_.push_back(
             {part.min.y, part.max.y, std::make_unique<LayerFold>(layers, merged_, part)});
@@ -268,7 +262,7 @@ PlaneBox SlabRenderer::boxOf(const Strip& strip, const SeenSlab& seen) const {
     return box;
 }
 
-// The part of the sheet that a run needs for a strip.
+// The sheet's part that a run needs for a strip.
 SheetLayout SlabRenderer::layoutOf(const Strip& strip, const SeenSlab& seen,
                                    const SlabRun& run) const {
     const SheetLayout& whole = input_.layout;
@@ -283,7 +277,6 @@ SheetLayout SlabRenderer::layoutOf(const Strip& strip, const SeenSlab& seen,
     return layoutPart(whole, part, run.blocks);
 }
 
-// The smallest that holds all parts.
 void SlabRenderer::findLargest() {
     largest_ = layoutPart(input_.layout, {});
     for (const Strip& strip : strips_) {
@@ -298,7 +291,7 @@ void SlabRenderer::findLargest() {
     }
 }
 
-// What all slabs together take: splatters for each thread, layers, and the merged one.
+// Memory of all slabs: splatters per thread, layers, and the merged layer.
 void SlabRenderer::requireSlabMemory() const {
     const double pieces = double(strips_.size()) * double(seen_.size());
     double bytes =
@@ -307,14 +300,13 @@ void SlabRenderer::requireSlabMemory() const {
         bytes += layerBytes(reachOfSeen(input_, seen_[i]), channels_);
     if (!hasFront_) bytes += layerBytes(reach_, channels_);
     if (!input_.plane.isParallel()) bytes += layerBytes(reach_, 1);
-    // What is kept is there already.
+    // Kept memory is there already.
     bytes = std::max(0.0, bytes - double(input_.memory.idleBytes()));
     requireMemory("sheets and layers at " + std::to_string(largest_.resolution) + " pixels a voxel",
                   bytes);
 }
 
-// The front slab goes straight into the merged layer if nothing lies before it, the others into
-// layers of their own.
+// Without a layer before it, the front slab renders into the merged layer; others into their own.
 void SlabRenderer::renderPiece(const Piece& piece, Splatter& splatter) {
     const Clock::time_point start = Clock::now();
     const std::size_t number = piece.slab;
@@ -341,7 +333,7 @@ void SlabRenderer::renderPiece(const Piece& piece, Splatter& splatter) {
 // Returns the seconds that compositing took.
 double SlabRenderer::renderSlab(const SeenSlab& seen, const Strip& strip, const PlaneBox& box,
                                 Splatter& splatter, Layer& layer) {
-    // However many slices it has.
+    // Whatever its number of slices.
     if (seen.slab->seenWords == 0 || box.empty()) return 0;
     const SlabRun whole = wholeRun(seen);
     double compositeSeconds = 0;
@@ -374,14 +366,12 @@ double SlabRenderer::renderRun(const PlannedSlab& slab, const SlabRun& run, cons
         });
 }
 
-// Slices are walked from the front on.
 SlabRenderer::SliceWalk SlabRenderer::walkOf(const PlannedSlab& slab, const SlabRun& run) const {
     if (input_.plane.frontToBack()) return {slab.firstSlice, run.firstSlice, run.lastSlice, 1};
     return {slab.firstSlice + slab.sliceCount - 1, run.lastSlice, run.firstSlice, -1};
 }
 
-// Calls composite(sheets, slice, reading, hidden), which returns how many pixels it went over, for
-// all slices that are seen.
+// Calls composite(sheets, slice, reading, hidden) -> pixels done, for all visible slices.
 template <typename Composite>
 double SlabRenderer::walkSlices(const PlannedSlab& slab, const SlabRun& run,
                                 const SheetLayout& layout, const PlaneBox& box, SlabCover& cover,
@@ -390,7 +380,7 @@ double SlabRenderer::walkSlices(const PlannedSlab& slab, const SlabRun& run,
     splatter.begin(slab, layout);
     const SliceWalk walk = walkOf(slab, run);
     const SheetBox last = readBox(readingOf(input_.plane, layout, walk.last), box, layout);
-    // What changes before the first that is seen is needed; nothing of it is read.
+    // Changes before the first visible slice are needed, but their pixels are not read.
     if (!slab.whole) {
         for (int slice = walk.begin; slice != walk.first; slice += walk.step)
             splatter.splat(slice, {0, 0});
@@ -399,7 +389,7 @@ double SlabRenderer::walkSlices(const PlannedSlab& slab, const SlabRun& run,
         const SheetReading reading = readingOf(input_.plane, layout, slice);
         const SheetBox read = readBox(reading, box, layout);
         NeededPixels needed = cover.next(reading, read, layout);
-        // Those between are read from between.
+        // Readings of slices between lie between the first and the last.
         needed.rowsFromNowOn = {std::min(read.min.y, last.min.y), std::max(read.max.y, last.max.y)};
         const auto sheets = splatter.splat(slice, needed);
         const Clock::time_point before = Clock::now();

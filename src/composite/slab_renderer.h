@@ -16,54 +16,50 @@
 
 namespace deltasplat {
 
-/// What slabs are rendered from, and how they are seen.
+/// The data of slabs, and how they are seen.
 struct SlabInput {
     SplatInput splat;
     const SheetLayout& layout;  ///< of whole sheets
     const BasePlane& plane;
-    KeptMemory& memory;  ///< for layers, and the one for sheets
+    KeptMemory& memory;  ///< for layers; the same as for sheets (SplatInput::memory)
 };
 
-/// Slices [firstSlice, lastSlice] of a slab, and the blocks that any of them has.
+/// Slices [firstSlice, lastSlice] of a slab, and the blocks in them.
 struct SlabRun {
     int firstSlice;
     int lastSlice;
     BlockBox blocks = {};
 };
 
-/// A slab of which some slices are seen: those of [firstSlice, lastSlice].
+/// A slab whose slices [firstSlice, lastSlice] are seen.
 struct SeenSlab {
     const PlannedSlab* slab;
     int firstSlice;
     int lastSlice;
-    /// Where only what lies in a part of the base plane is drawn: the runs that have any of it, as
-    /// they are walked, and the box that they are drawn into. Else all is.
+    /// If set, draws only a part of the base plane: the runs with any of it, in walking order, and
+    /// the box to draw into. Else draws everything.
     std::vector<SlabRun> runs = {};
     PlaneBox box = {};
 };
 
-/// Returns the slabs of which something may be seen, from the front on.
+/// Returns the slabs that may be visible, from the front on.
 std::vector<SeenSlab> seenSlabs(const SlabInput& input);
-/// Returns the base plane's part that one of them reaches.
+/// Returns the base plane's part that a slab reaches.
 PlaneBox reachOfSeen(const SlabInput& input, const SeenSlab& seen);
-/// Returns the part that all of them reach.
+/// Returns the part that all slabs reach.
 PlaneBox reachOfAll(const SlabInput& input, const std::vector<SeenSlab>& seen);
 
-/// Renders slabs into layers, and puts these together. Work is cut into pieces of a slab and a
-/// *strip*, some rows of the base plane that are worked on by themselves; how many strips there are
-/// changes nothing but who does what.
+/// Renders slabs into layers and puts these together. A piece of work is a slab in a *strip*, some
+/// rows of the base plane of their own; the number of strips only decides who does what.
 class SlabRenderer {
   public:
-    /// @param seen   which, from the front on
-    /// @param front  what lies before them, and reaches all that they do; bits are then those of
-    ///               rendering all at once
+    /// @param seen   from the front on
+    /// @param front  layer before all slabs, as large; bits equal those of rendering all at once
     /// @throw Error(kFailed) if sheets and layers do not fit into memory
     SlabRenderer(const SlabInput& input, std::vector<SeenSlab> seen, const Listener& listener,
                  std::optional<Layer> front = {});
 
-    /// Renders the slabs, from the front on.
     void run();
-    /// Returns what the slabs look like together.
     Layer merge();
     /// The share of the pieces' time that went into compositing, 0..1.
     double compositeShare() const {
@@ -75,16 +71,16 @@ class SlabRenderer {
         int first;
         int last;
         std::unique_ptr<LayerFold> layers;
-        std::size_t next = 0;  // of its slabs, that nobody has begun; guarded by mutex_
+        std::size_t next = 0;  // first slab of the strip that nobody has begun; guarded by mutex_
     };
     struct Piece {
         Strip& strip;
         std::size_t slab;
     };
-    // How the slices of a run are walked.
+    // How slices of a run are walked.
     struct SliceWalk {
         int begin;  // of the slab
-        int first;  // that is seen
+        int first;  // first visible slice
         int last;
         int step;
     };
@@ -117,19 +113,19 @@ class SlabRenderer {
     SharedProgress progress_;
     std::vector<glm::vec4> scales_;  // of the planes of colours
     int channels_;
-    std::vector<SeenSlab> seen_;        // from the front on
-    bool hasFront_;                     // before them
-    PlaneBox reach_;                    // of all of them
+    std::vector<SeenSlab> seen_;        // front to back
+    bool hasFront_;                     // before the slabs
+    PlaneBox reach_;                    // of all slabs
     std::optional<StepLengths> steps_;  // from an eye, of colours
     std::vector<Strip> strips_;
     SheetLayout largest_;  // holds the part of any piece
     Layer merged_;
     std::mutex mutex_;           // guards all below
-    std::size_t nextStrip_ = 0;  // that nobody has for its own
+    std::size_t nextStrip_ = 0;  // first strip without an owner
     double compositeSeconds_ = 0;
     double pieceSeconds_ = 0;
     double slicesDone_ = 0;
-    double slices_ = 0;  // of all that is to be rendered
+    double slices_ = 0;  // of all work
 };
 
 }  // namespace deltasplat

@@ -26,7 +26,6 @@ namespace deltasplat {
 
 namespace {
 
-/// What is the same for all voxels of a comparison.
 struct ErrorTerms {
     WideValue backgroundA;
     WideValue backgroundB;
@@ -35,28 +34,26 @@ struct ErrorTerms {
     bool wide = false;  ///< as VoxelSource
 };
 
-/// Returns |a - b|: 0 if they are equal (NaN equals NaN), never more than the largest double.
+/// Returns |a - b|: 0 if equal (NaN equals NaN), at most the largest double.
 double errorOf(const WideValue& a, const WideValue& b);
 
-/// Errors of some voxels, added up. The sums depend on the order of the additions, so that is to be
-/// fixed.
+/// Summed errors of some voxels. Callers keep one order of additions, because the sums depend on
+/// it.
 struct ErrorSums {
-    std::uint64_t voxels = 0;  ///< compared ones
+    std::uint64_t voxels = 0;
     std::uint64_t overFail = 0;
     std::uint64_t overWarn = 0;
     std::uint64_t activeMismatch = 0;
-    /// Beyond the range of a double, where long double allows: squares of errors are.
-    long double sum = 0;
+    long double sum = 0;  ///< squares may exceed a double's range
     long double sumOfSquares = 0;
     double max = 0;
     openvdb::Coord maxAt{0, 0, 0};
     WideValue maxA;
     WideValue maxB;
 
-    /// Adds `count` voxels that are alike, the first of them at `first`.
+    /// Adds `count` equal voxels, starting at `first`.
     void addTile(const Sample& a, const Sample& b, const openvdb::Coord& first, std::uint64_t count,
                  const ErrorTerms& terms);
-    /// Adds the block whose first voxel is `origin`.
     void addBlock(const BlockSamples& a, const BlockSamples& b, const openvdb::Coord& origin,
                   const ErrorTerms& terms);
     void append(const ErrorSums& other);
@@ -91,7 +88,7 @@ bool areAllActive(const BlockSamples& a, const BlockSamples& b) {
     return true;
 }
 
-// Without a branch inside, so that the compiler uses whole vectors.
+// Branch-free, so that the compiler vectorizes it.
 bool areSame(const std::array<double, kVoxels>& a, const std::array<double, kVoxels>& b) {
     int different = 0;
     for (int i = 0; i < kVoxels; ++i) different |= a[i] != b[i];
@@ -117,7 +114,7 @@ void findErrors(const BlockSamples& a, const BlockSamples& b, bool wide, Errors&
     }
 }
 
-// Eight largest ones side by side, as in addUp.
+// Keeps eight maxima in parallel, like addUp.
 double largestOf(const Errors& errors) {
     std::array<double, 8> largest{};
     for (int i = 0; i < kVoxels; i += 8) {
@@ -128,9 +125,9 @@ double largestOf(const Errors& errors) {
     return *std::max_element(largest.begin(), largest.end());
 }
 
-// Adds errors and their squares, eight sums side by side.
+// Adds errors and their squares, as eight parallel sums.
 void addUp(const Errors& errors, double max, ErrorSums& sums) {
-    // Scaled by a power of two, which is exact, squares stay within the range of a double.
+    // An exact scale by a power of two keeps squares in a double's range.
     const int exponent = std::max(std::ilogb(max), -1000);
     const double scale = std::ldexp(1.0, -exponent);
     std::array<double, 8> sum{};
@@ -158,7 +155,7 @@ std::uint64_t countOver(const Errors& errors, double threshold) {
     return std::uint64_t(count);
 }
 
-// Number, in the order of a leaf, of the first voxel in the order of z, y, x that has this error.
+// Returns the leaf offset of the first voxel, in z, y, x order, with this error.
 int firstWith(const Errors& errors, double error) {
     for (int n = 0; n < kVoxels; ++n) {
         const int i = (n & 7) * 64 + (n & 56) + (n >> 6);
@@ -207,7 +204,7 @@ void ErrorSums::addBlock(const BlockSamples& a, const BlockSamples& b, const Coo
     alignas(64) Errors errors;
     if (!same) findErrors(a, b, terms.wide, errors);
 
-    // Voxels that are background in both volumes are no errors of these voxels.
+    // Voxels that are background in both volumes are not compared.
     int compared = kVoxels;
     for (int i = 0; i < kVoxels && !allActive; ++i) {
         if (isCompared(sampleAt(a, i, terms.wide), sampleAt(b, i, terms.wide), terms)) continue;
@@ -238,7 +235,7 @@ void ErrorSums::append(const ErrorSums& other) {
     addMax(other.max, other.maxAt, other.maxA, other.maxB);
 }
 
-/// Adds up the errors of all voxels. The order of the additions follows from the volumes alone.
+/// Adds up the errors of all voxels, in an order that depends on the volumes only.
 ErrorSums compareTrees(const VoxelSource& a, const VoxelSource& b, const ErrorTerms& terms,
                        const Listener& listener);
 
@@ -246,7 +243,7 @@ namespace {
 
 using openvdb::Coord;
 
-// Edges of what one entry of a tree's root, of the nodes below and of those below them stands for.
+// Edges of the regions of a root entry and of the two node levels below.
 constexpr int kRegion = 4096;
 constexpr int kTile = 128;
 constexpr int kBlock = 8;
@@ -255,21 +252,18 @@ constexpr std::uint64_t cube(int edge) {
     return std::uint64_t(edge) * std::uint64_t(edge) * std::uint64_t(edge);
 }
 
-// Both volumes on one thread.
 class ReaderPair {
   public:
     ReaderPair(const VoxelSource& a, const VoxelSource& b, const ErrorTerms& terms)
         : a_(a.makeReader()), b_(b.makeReader()), terms_(terms) {}
 
-    // Adds the region if both volumes are uniform over it: if their nodes there are at most this
-    // deep.
+    // Adds a region if both volumes are uniform in it, i.e. have nodes of at most this depth there.
     bool addIfUniform(const Coord& first, int depth, int edge, ErrorSums& sums) {
         if (a_->depthAt(first) > depth || b_->depthAt(first) > depth) return false;
         sums.addTile(a_->sampleAt(first), b_->sampleAt(first), first, cube(edge), terms_);
         return true;
     }
 
-    // Adds the 8x8x8 voxels at `origin`.
     void addBlock(const Coord& origin, ErrorSums& sums) {
         const bool leafA = a_->readLeaf(origin, blockA_);
         const bool leafB = b_->readLeaf(origin, blockB_);
@@ -290,8 +284,7 @@ class ReaderPair {
     BlockSamples blockB_;
 };
 
-// Calls visit(first) for every cube of the given edge in the box of this size at `origin`, in
-// memory order.
+// Calls visit(first) for each cube of an edge length in the box at `origin`, in memory order.
 template <typename Visit>
 void forEachCube(const Coord& origin, const Coord& size, int edge, const Visit& visit) {
     for (int x = 0; x < size.x(); x += edge) {
@@ -309,10 +302,10 @@ std::vector<Coord> regionsOf(const VoxelSource& a, const VoxelSource& b) {
     return regions;
 }
 
-// Pieces of 8x128x128 voxels: a layer of blocks of one node, enough for one thread at a time.
+// Pieces of 8x128x128 voxels, one layer of a node's blocks: enough work for one thread.
 const Coord kPiece{kBlock, kTile, kTile};
 
-// Adds what is uniform on a large scale, and returns the first voxels of all other pieces.
+// Adds large uniform regions; returns the first voxels of all other pieces.
 std::vector<Coord> addLargeTiles(const VoxelSource& a, const VoxelSource& b, ReaderPair& readers,
                                  ErrorSums& sums) {
     std::vector<Coord> pieces;
@@ -334,7 +327,7 @@ ErrorSums compareTrees(const VoxelSource& a, const VoxelSource& b, const ErrorTe
     ReaderPair readers(a, b, terms);
     const std::vector<Coord> pieces = addLargeTiles(a, b, readers, whole);
 
-    // In batches, so that few sums are in memory and the listener is heard.
+    // Batches limit the sums in memory and let the listener report.
     constexpr std::size_t kBatch = 512;
     for (std::size_t begin = 0; begin < pieces.size(); begin += kBatch) {
         listener.report(double(begin) / double(pieces.size()));
@@ -350,39 +343,37 @@ ErrorSums compareTrees(const VoxelSource& a, const VoxelSource& b, const ErrorTe
     return whole;
 }
 
-// How many of one's units of length another's is, where both are known.
+// Returns the other's length units per unit of `volume`; 1 if a unit is unknown.
 double unitFactor(const Volume& other, const Volume& volume) {
-    if (other.lengthUnit == volume.lengthUnit) return 1;
-    const double from = millimetresIn(volume.lengthUnit), to = millimetresIn(other.lengthUnit);
+    if (other.lengthUnit() == volume.lengthUnit()) return 1;
+    const double from = millimetresIn(volume.lengthUnit()), to = millimetresIn(other.lengthUnit());
     return from > 0 && to > 0 ? from / to : 1;
 }
 
-// Turns a patient's coordinates from one system into the other: both have z up, and x and y run
-// against each other. Lengths are those of the other's unit then.
+// Converts patient coordinates, where signs of x and y differ, and lengths to the other's unit.
 glm::dmat4 inSpaceOf(const Volume& other, const Volume& volume) {
     const bool turned =
-        !volume.space.empty() && !other.space.empty() && volume.space != other.space;
+        !volume.space().empty() && !other.space().empty() && volume.space() != other.space();
     const double unit = unitFactor(other, volume);
-    if (!turned && unit == 1) return volume.worldFromIndex;
+    if (!turned && unit == 1) return volume.worldFromIndex();
     glm::dmat4 turn(1.0);
     turn[0][0] = turn[1][1] = turned ? -unit : unit;
     turn[2][2] = unit;
-    return turn * volume.worldFromIndex;
+    return turn * volume.worldFromIndex();
 }
 
 IndexBox movedBox(const IndexBox& box, const glm::ivec3& offset) {
     return box.empty() ? box : IndexBox{box.min + offset, box.max + offset};
 }
 
-// How far apart the places of B's voxels are from those of A's that lie `offset` further on.
+// Distances between B's voxels and A's at indices `offset` higher.
 struct Places {
     glm::ivec3 offset{0};
     double shift = 0;     // as VolumeComparison
-    bool asHeld = false;  // no farther than numbers of the coarser format tell places apart
+    bool asHeld = false;  // within the precision of the coarser format
 };
 
-// How far a voxel's place may be from the one meant, where each number of its transform is within
-// half a unit of its last digit.
+// Returns a voxel's error in place if each matrix element is off by half a unit in its last digit.
 glm::dvec3 roundingAt(const glm::dmat4& worldFromIndex, int digits, const glm::dvec4& index) {
     constexpr int kLeastExponent = std::numeric_limits<float>::min_exponent - 1;
     glm::dvec3 rounding(0);
@@ -395,13 +386,13 @@ glm::dvec3 roundingAt(const glm::dmat4& worldFromIndex, int digits, const glm::d
     return rounding;
 }
 
-// The map between both places is affine, so the corners move farthest.
-// @param digits  of the numbers of each
+// The map between the places is affine, so a corner moves farthest.
+// @param digits  precision of A's and B's numbers
 Places placesAt(const Volume& a, const Volume& b, const glm::ivec3& offset, glm::ivec2 digits) {
     const glm::dmat4 placeB = inSpaceOf(a, b);
-    const glm::dmat4 moved = placeB - glm::translate(a.worldFromIndex, glm::dvec3(offset));
-    IndexBox box = boxOfBoth(movedBox(a.box, -offset), b.box);
-    // Without any voxels, a transform is where its first ones would be.
+    const glm::dmat4 moved = placeB - glm::translate(a.worldFromIndex(), glm::dvec3(offset));
+    IndexBox box = boxOfBoth(movedBox(a.box(), -offset), b.box());
+    // Without voxels, compares where the first ones would be.
     if (box.empty()) box = {glm::ivec3(0), glm::ivec3(1)};
     double farthest = 0;
     bool asHeld = true;
@@ -410,21 +401,20 @@ Places placesAt(const Volume& a, const Volume& b, const glm::ivec3& offset, glm:
         const glm::dvec4 indexA = indexB + glm::dvec4(offset, 0);
         const glm::dvec3 way(moved * indexB);
         farthest = std::max(farthest, glm::length(way));
-        // What is computed of these numbers, here and by who wrote them, is rounded a few times.
+        // Computations here and in the writer add a few roundings.
         constexpr int kComputed = std::numeric_limits<double>::digits - 3;
         const glm::dvec3 held =
-            glm::max(roundingAt(a.worldFromIndex, digits.x, indexA),
+            glm::max(roundingAt(a.worldFromIndex(), digits.x, indexA),
                      roundingAt(placeB, digits.y, indexB)) +
-            roundingAt(a.worldFromIndex, kComputed, glm::abs(indexA) + glm::abs(indexB));
+            roundingAt(a.worldFromIndex(), kComputed, glm::abs(indexA) + glm::abs(indexB));
         asHeld = asHeld && glm::all(glm::lessThanEqual(glm::abs(way), held));
     }
     const double voxel = std::min(smallestSize(a), unitFactor(a, b) * smallestSize(b));
     return {offset, std::min(farthest / voxel, std::numeric_limits<double>::max()), asHeld};
 }
 
-// The ways between indices of equal places that come into question: none, the whole number of
-// voxels nearest to the way in the world from A's voxel (0,0,0) to B's, and the way between the
-// first voxels of boxes of one size, which is right however coarse the numbers of a transform are.
+// Returns candidate offsets: none; the nearest whole number of voxels between both voxels (0,0,0);
+// and between the first voxels of equally large boxes, right even for imprecise transforms.
 std::vector<glm::ivec3> offsetsOf(const Volume& a, const Volume& b) {
     std::vector<glm::ivec3> offsets{glm::ivec3(0)};
     const auto add = [&](const glm::dvec3& offset) {
@@ -432,15 +422,15 @@ std::vector<glm::ivec3> offsetsOf(const Volume& a, const Volume& b) {
         if (std::max({std::abs(offset.x), std::abs(offset.y), std::abs(offset.z)}) <= kMost)
             offsets.emplace_back(offset);
     };
-    const glm::dvec3 way(inSpaceOf(a, b)[3] - a.worldFromIndex[3]);
-    add(glm::round(glm::inverse(glm::dmat3(a.worldFromIndex)) * way));
-    if (!a.box.empty() && a.box.dims() == b.box.dims())
-        add(glm::dvec3(a.box.min) - glm::dvec3(b.box.min));
+    const glm::dvec3 way(inSpaceOf(a, b)[3] - a.worldFromIndex()[3]);
+    add(glm::round(glm::inverse(glm::dmat3(a.worldFromIndex())) * way));
+    if (!a.box().empty() && a.box().dims() == b.box().dims())
+        add(glm::dvec3(a.box().min) - glm::dvec3(b.box().min));
     return offsets;
 }
 
-// The first way by which places are equal; else the one by which voxels stay within half of one of
-// each other; else none.
+// Chooses the first offset with equal places; else one within format precision; else the smallest
+// shift below half a voxel; else none.
 Places choosePlaces(const Volume& a, const Volume& b, const CompareOptions& options) {
     std::vector<Places> places;
     const glm::ivec2 digits(options.placeDigitsA, options.placeDigitsB);
@@ -465,13 +455,13 @@ void takePlaces(const Volume& a, const Volume& b, const CompareOptions& options,
     result.shift = places.shift;
     result.transformEqual = places.asHeld || places.shift <= options.shift;
     result.sizeEqual =
-        a.hasBackground || b.hasBackground || a.box == movedBox(b.box, result.offset);
+        a.hasBackground() || b.hasBackground() || a.box() == movedBox(b.box(), result.offset);
 }
 
 void takeSums(const ErrorSums& sums, VolumeComparison& result) {
     result.voxels = sums.voxels;
     if (sums.voxels > 0) {
-        // Rounding must not make a mean larger than the largest.
+        // Rounding must not make a mean exceed the maximum.
         const long double count = static_cast<long double>(sums.voxels);
         result.meanError = std::min(double(sums.sum / count), sums.max);
         result.rmsError = std::min(double(std::sqrt(sums.sumOfSquares / count)), sums.max);
@@ -493,9 +483,9 @@ VolumeComparison compareVolumes(const Volume& a, const Volume& b, const CompareO
                                 const Listener& listener) {
     const DefaultFloats floats;
     const bool wide = holdsInt64(a) || holdsInt64(b);
-    // A dense volume says nothing about a background, so it takes the other's.
-    const WideValue backgroundA = backgroundOf(a.hasBackground ? a : b, wide);
-    const WideValue backgroundB = backgroundOf(b.hasBackground ? b : a, wide);
+    // A dense volume has no background and takes the other's.
+    const WideValue backgroundA = backgroundOf(a.hasBackground() ? a : b, wide);
+    const WideValue backgroundB = backgroundOf(b.hasBackground() ? b : a, wide);
     const ErrorTerms terms{backgroundA, backgroundB, options.fail, options.warn, wide};
 
     VolumeComparison result;
@@ -504,9 +494,9 @@ VolumeComparison compareVolumes(const Volume& a, const Volume& b, const CompareO
     takeSums(compareTrees({a, wide, backgroundA}, {b, wide, backgroundB, offset}, terms, listener),
              result);
     result.backgroundError = errorOf(backgroundA, backgroundB);
-    result.typeEqual = a.type == b.type;
-    result.classEqual = a.gridClass == b.gridClass;
-    result.nameEqual = a.name == b.name;
+    result.typeEqual = a.type() == b.type();
+    result.classEqual = a.gridClass() == b.gridClass();
+    result.nameEqual = a.name() == b.name();
     return result;
 }
 

@@ -27,8 +27,7 @@ using openvdb::Coord;
 
 constexpr double kWideStep = 0x1p32;
 
-// Cuts towards 0, so that both parts have the value's sign: their differences then cannot cancel
-// to 0 unless both are 0.
+// Truncates towards 0, so parts share the value's sign, and differences cancel only if both are 0.
 WideValue split(double value) {
     if (!std::isfinite(value)) return {value, 0};
     const double high = std::trunc(value / kWideStep) * kWideStep;
@@ -47,11 +46,10 @@ WideValue split(std::uint64_t value) {
     return {double(high) * kWideStep, double(value % kStep)};
 }
 
-// Turns what a tree stores into values.
 struct Decoder {
-    std::shared_ptr<const std::vector<double>> table;  // [65536] what codes stand for; or null
+    std::shared_ptr<const std::vector<double>> table;  // [65536] values of codes; or null
     bool wide = false;
-    bool isUnsigned = false;  // int64 has the bits of uint64
+    bool isUnsigned = false;  // int64 holds the bits of uint64
 
     template <typename T>
     WideValue operator()(T stored) const {
@@ -98,7 +96,7 @@ class TreeReader : public VoxelReader {
 
   private:
     using Leaf = typename Tree::LeafNodeType;
-    // Mask grids hold their states as values.
+    // Mask grids store their states as values.
     using Stored = std::conditional_t<std::is_same_v<typename Tree::ValueType, openvdb::ValueMask>,
                                       bool, typename Tree::ValueType>;
 
@@ -111,7 +109,7 @@ class TreeReader : public VoxelReader {
         }
     }
 
-    // The decision to split is taken once a block, so that the common loop stays a short one.
+    // Splitting is decided per block, to keep the common loop short.
     template <bool kWide>
     void decodeValues(const Leaf& leaf, BlockSamples& block) const {
         const auto stored = valuesOf(leaf);
@@ -141,7 +139,6 @@ class TreeReader : public VoxelReader {
     std::optional<WideValue> inactive_;
 };
 
-// Unpacks leaves from their file.
 template <typename T>
 class PackedReader : public VoxelReader {
   public:
@@ -178,7 +175,7 @@ class PackedReader : public VoxelReader {
     }
 
   private:
-    // Values that are not finite are no volume's, where they are active.
+    // Active values must be finite.
     void requireFinite(const std::array<std::uint64_t, 8>& active) const {
         if constexpr (std::is_floating_point_v<T>) {
             if (std::all_of(values_.begin(), values_.end(), isFinite<T>)) return;
@@ -190,7 +187,7 @@ class PackedReader : public VoxelReader {
     }
 
     const PackedGrid& packed_;
-    const PackedGrid::Tree<T>& nodes_;  // an accessor would make room for leaves' values
+    const PackedGrid::Tree<T>& nodes_;  // an accessor would allocate leaf values
     Decoder decode_;
     VdbLeaves::BytesRoom room_;
     std::array<T, BlockSamples::kVoxels> values_;
@@ -205,12 +202,12 @@ std::vector<Coord> regionsOf(const Tree& tree) {
     return regions;
 }
 
-// Returns a copy of a tree whose voxels lie `offset` further on.
+// Returns a copy of a tree shifted by `offset`.
 template <typename Tree>
 std::shared_ptr<const Tree> moved(const Tree& tree, const Coord& offset) {
     auto result = std::make_shared<Tree>(tree.background());
     openvdb::tree::ValueAccessor<Tree, /*IsSafe=*/false> to(*result);
-    // Tiles first: filling their place must not take away nodes that the accessor knows.
+    // Tiles first, because fill() may delete nodes that the accessor caches.
     for (const bool tiles : {true, false}) {
         auto from = tree.cbeginValueAll();
         if (tiles) from.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
@@ -218,7 +215,7 @@ std::shared_ptr<const Tree> moved(const Tree& tree, const Coord& offset) {
         for (; from; ++from) {
             const bool active = from.isValueOn();
             typename Tree::ValueType value = *from;
-            // A leaf of a mask has no values beside its states.
+            // A mask leaf has only states.
             if constexpr (std::is_same_v<typename Tree::BuildType, openvdb::ValueMask>) {
                 value = active;
             }
@@ -238,12 +235,11 @@ std::shared_ptr<const Tree> moved(const Tree& tree, const Coord& offset) {
     return result;
 }
 
-// Calls use(tree) for the volume's own grid.
 template <typename Use>
 void withSource(const Volume& volume, const Use& use) {
-    const TreeGrid& grid = volume.source->grid;
+    const TreeGrid& grid = volume.source()->grid;
     if (grid.apply<ScalarTrees>(use)) return;
-    throw Error(ErrorCode::kInput, "grid \"" + volume.name + "\"", "type " + grid.type(),
+    throw Error(ErrorCode::kInput, "grid \"" + volume.name() + "\"", "type " + grid.type(),
                 "a scalar grid");
 }
 
@@ -257,12 +253,12 @@ void BlockSamples::fill(const Sample& sample, bool wide) {
 
 VoxelSource::VoxelSource(const Volume& volume, bool wide, WideValue background, const Coord& offset)
     : background_(background) {
-    // Only a source with inactive values of its own tells them apart.
+    // Only a source grid with a background has inactive values of its own.
     std::optional<WideValue> inactive;
-    if (!volume.source || !volume.hasBackground) inactive = background;
+    if (!volume.source() || !volume.hasBackground()) inactive = background;
     const auto readTree = [&](const auto& own, Decoder decode) {
         using Tree = std::decay_t<decltype(own)>;
-        // A volume's own tree outlives this; a copy is held.
+        // The volume's tree outlives this source; a copy is owned.
         std::shared_ptr<const Tree> tree(&own, [](const Tree*) {});
         if (offset != Coord(0)) tree = moved(own, offset);
         regions_ = regionsOf(*tree);
@@ -270,9 +266,9 @@ VoxelSource::VoxelSource(const Volume& volume, bool wide, WideValue background, 
             return std::make_unique<TreeReader<Tree>>(*tree, decode, inactive);
         };
     };
-    if (volume.source && volume.source->packed) {
-        if (offset != Coord(0)) throw NeedsWholeGrid(volume.name);
-        const std::shared_ptr<const PackedGrid> packed = volume.source->packed;
+    if (volume.source() && volume.source()->packed) {
+        if (offset != Coord(0)) throw NeedsWholeGrid(volume.name());
+        const std::shared_ptr<const PackedGrid> packed = volume.source()->packed;
         const auto read = [&]<typename T>(const std::shared_ptr<T>& nodes) {
             regions_ = regionsOf(*nodes);
             makeReader_ = [packed, &tree = *nodes, wide] {
@@ -281,28 +277,28 @@ VoxelSource::VoxelSource(const Volume& volume, bool wide, WideValue background, 
             };
         };
         std::visit(read, packed->nodes);
-    } else if (volume.source) {
+    } else if (volume.source()) {
         withSource(volume, [&](const auto& tree) {
             readTree(tree, {nullptr, wide, holdsUnsigned(volume)});
         });
     } else {
         readTree(
-            volume.codes->tree(),
-            {std::make_shared<const std::vector<double>>(valuesOfCodes(volume.codeBook)), wide});
+            volume.codes()->tree(),
+            {std::make_shared<const std::vector<double>>(valuesOfCodes(volume.codeBook())), wide});
     }
 }
 
 namespace {
 
-// Returns the background of a volume of 64-bit integers; nothing of another.
+// Returns the background of a 64-bit integer volume; nothing for others.
 std::optional<std::int64_t> wideBackground(const Volume& volume) {
-    if (!volume.source) return std::nullopt;
-    if (volume.source->packed) {
+    if (!volume.source()) return std::nullopt;
+    if (volume.source()->packed) {
         const auto* const nodes =
-            std::get_if<PackedGrid::Nodes<std::int64_t>>(&volume.source->packed->nodes);
+            std::get_if<PackedGrid::Nodes<std::int64_t>>(&volume.source()->packed->nodes);
         return nodes ? std::optional((*nodes)->background()) : std::nullopt;
     }
-    const auto* const tree = volume.source->grid.as<openvdb::Int64Tree>();
+    const auto* const tree = volume.source()->grid.as<openvdb::Int64Tree>();
     return tree ? std::optional(tree->background()) : std::nullopt;
 }
 
@@ -314,9 +310,9 @@ bool holdsInt64(const Volume& volume) {
 
 WideValue backgroundOf(const Volume& volume, bool wide) {
     // A double cannot hold every 64-bit integer.
-    if (const auto background = wideBackground(volume); volume.hasBackground && background)
+    if (const auto background = wideBackground(volume); volume.hasBackground() && background)
         return split(*background);
-    return Decoder{nullptr, wide}(volume.background);
+    return Decoder{nullptr, wide}(volume.background());
 }
 
 }  // namespace deltasplat

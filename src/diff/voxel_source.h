@@ -16,15 +16,15 @@
 
 namespace deltasplat {
 
-/// A value, exactly: the sum of both parts. `low` is used only if a 64-bit integer takes part in
-/// the comparison; then `high` is a multiple of 2^32 and |low| < 2^32, both with the value's sign.
+/// An exact value: the sum of both parts. `low` is used only if 64-bit integers are compared; then
+/// `high` is a multiple of 2^32 and |low| < 2^32, both with the value's sign.
 struct WideValue {
     double high = 0;
     double low = 0;
 
     double rounded() const { return high + low; }
-    /// Returns the value as the shortest decimal number that no other double has; with all digits
-    /// where integers of 64 bits are finer than doubles.
+    /// Returns the shortest decimal number that identifies the double, or all digits if 64-bit
+    /// integers are finer than doubles.
     std::string text() const {
         const double size = std::fabs(rounded());
         const bool isWhole = low == std::trunc(low) && high == std::trunc(high);
@@ -35,7 +35,7 @@ struct WideValue {
     bool operator==(const WideValue&) const = default;
 };
 
-/// One voxel, or many alike.
+/// One voxel, or many equal ones.
 struct Sample {
     WideValue value;
     bool active = false;
@@ -46,13 +46,13 @@ struct BlockSamples {
     static constexpr int kVoxels = 512;
     alignas(64) std::array<double, kVoxels> high;
     alignas(64) std::array<double, kVoxels> low;  ///< as WideValue::low
-    std::array<std::uint64_t, 8> active;          ///< one bit a voxel
+    std::array<std::uint64_t, 8> active;          ///< one bit per voxel
 
     void fill(const Sample& sample, bool wide);
 };
 
-/// Reads one volume's voxels on one thread.
-/// @throw NeedsWholeGrid if they cannot be unpacked, or are not finite
+/// Reads one volume's voxels, on one thread.
+/// @throw NeedsWholeGrid if voxels cannot be unpacked or are not finite
 class VoxelReader {
   public:
     virtual ~VoxelReader() = default;
@@ -60,17 +60,17 @@ class VoxelReader {
     /// of 128^3, 2 of 8^3, 3 a leaf.
     virtual int depthAt(const openvdb::Coord& at) = 0;
     virtual Sample sampleAt(const openvdb::Coord& at) = 0;
-    /// Fills in the block at `origin`; false if there is no leaf, so that sampleAt says it all.
+    /// Fills the block at `origin`; false if there is no leaf, and sampleAt gives all its voxels.
     virtual bool readLeaf(const openvdb::Coord& origin, BlockSamples& block) = 0;
 };
 
-/// How volumes of any kind look to the comparison.
+/// A uniform view of any volume for the comparison.
 class VoxelSource {
   public:
-    /// @param wide        whether values are split, as WideValue says
-    /// @param background  what voxels outside a dense volume hold
-    /// @param offset      added to all indices; unless it is 0, the voxels are copied
-    /// @throw NeedsWholeGrid if they would have to be, of a volume that is packed
+    /// @param wide        whether values are split as in WideValue
+    /// @param background  value outside a dense volume
+    /// @param offset      added to all indices; if not 0, voxels are copied
+    /// @throw NeedsWholeGrid if voxels of a packed volume would have to be copied
     VoxelSource(const Volume& volume, bool wide, WideValue background,
                 const openvdb::Coord& offset = openvdb::Coord(0));
 
@@ -85,11 +85,10 @@ class VoxelSource {
     std::function<std::unique_ptr<VoxelReader>()> makeReader_;
 };
 
-/// Returns whether the volume's own values are 64-bit integers.
+/// Whether the volume's own values are 64-bit integers.
 bool holdsInt64(const Volume& volume);
 
-/// Returns the value that inactive voxels hold beyond everything stored.
-/// @param wide  as VoxelSource
+/// Returns the value of inactive voxels outside all stored data; `wide` as in VoxelSource.
 WideValue backgroundOf(const Volume& volume, bool wide);
 
 }  // namespace deltasplat

@@ -36,7 +36,6 @@ const DenseFormat* findDenseFormat(const std::string& extension) {
 
 namespace {
 
-// Returns "a, b or c".
 std::string listText(const std::vector<std::string>& all) {
     std::string text;
     for (std::size_t i = 0; i < all.size(); ++i)

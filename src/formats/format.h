@@ -15,36 +15,30 @@ struct DenseSource;
 struct InputKind;
 struct ReadOptions;
 
-/// A format of volumes: all that others know of it. Each lies in a folder of its own, with what
-/// reads and what writes it, and has a line in the table (format.cpp).
+/// A format of volumes, as the rest of the library sees it. Its code has a folder of its own; its
+/// line in the table is in format.cpp.
 struct Format {
-    /// Of files that are read, in lower case, those first that messages name first.
-    std::vector<std::string> extensions;
-    /// Whether files are also read with ".gz" behind.
-    bool mayBePacked = true;
-    /// Whether files say where voxels lie; others leave it to ReadOptions::raw.
-    bool saysPlace = true;
-    /// Whether a file may hold several volumes, of which ReadOptions::volume chooses one.
-    bool mayHoldSeveral = false;
-    /// Opens an input by its headers. Null for .vdb, which has grids.
+    std::vector<std::string> extensions;  ///< lower-case, to read, in the order of messages
+    bool mayBePacked = true;  ///< whether readers also take the extensions with ".gz" appended
+    bool saysPlace = true;    ///< whether files say where voxels lie; else ReadOptions::raw does
+    bool mayHoldSeveral = false;  ///< volumes in one file; ReadOptions::volume chooses
+    /// Opens an input by its headers. Null for .vdb, whose grids readVdb reads.
     DenseSource (*open)(const std::filesystem::path& input, const InputKind& kind,
                         const ReadOptions& options, const Listener& listener) = nullptr;
-    /// Returns the files that an input consists of, itself the first. Null: itself alone.
+    /// Returns the files of an input, the input itself first. Null: only the input.
     std::vector<std::filesystem::path> (*files)(const std::filesystem::path& input) = nullptr;
-    /// How volumes are written, by extension.
-    std::vector<DenseFormat> written = {};
+    std::vector<DenseFormat> written = {};  ///< one writer per extension
 };
 
-/// Returns the table of all formats.
 std::span<const Format* const> formats();
 
-/// Returns the format that reads a file by its extension; null if there is none.
+/// Returns the format with the file's extension, or null.
 const Format* formatOf(const std::filesystem::path& file);
 
-/// Returns how a file of an extension is written; null if it is no dense one.
+/// Returns the writer for an extension, or null if no dense format has it.
 const DenseFormat* findDenseFormat(const std::string& extension);
 
-/// Returns what all formats read, and write, by extension, for messages.
+/// Lists the extensions that can be read, or written, for messages.
 std::string readableText();
 std::string writableText();
 

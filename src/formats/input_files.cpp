@@ -42,14 +42,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The folder of an input, or the one that it is.
+// Returns the input itself if it is a folder, else its folder.
 fs::path folderOf(const fs::path& input) {
     std::error_code error;
     const fs::path near = fs::is_directory(input, error) ? input : input.parent_path();
     return near.empty() ? "." : near;
 }
 
-// What is not there at all is for its reader to say.
+// Missing files pass: their reader reports them.
 bool isWithin(const fs::path& folder, const fs::path& file) {
     std::error_code error;
     const fs::path around = fs::canonical(fs::absolute(folder), error);
@@ -105,7 +105,7 @@ namespace {
 
 constexpr std::string_view kSigns = "#@%$*?[]{}\\";
 
-// The path with escapes taken out, but for folders that are there, and for the file if it is kept.
+// Removes the escapes, except in folders that exist as written, and in the file name if `keepFile`.
 std::string plainPath(const std::string& path, bool keepFile) {
     std::string text;
     for (const NamePart& part : partsOfName(path)) {
@@ -152,7 +152,7 @@ bool isFolderThere(const std::string& path) {
 
 std::vector<NamePart> partsOfName(const std::string& path) {
     std::vector<NamePart> parts;
-    std::string before;  // as it is on the disk
+    std::string before;  // as on the disk
     for (std::size_t begin = 0; begin < path.size();) {
         const std::size_t slash = path.find('/', begin);
         NamePart part;

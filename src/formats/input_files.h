@@ -10,73 +10,67 @@
 
 namespace deltasplat {
 
-/// Returns every file that an input consists of, itself first if it is a file: a header and its
-/// data file, the images that a pattern stands for, or the slices in a folder. Only names, headers
-/// and the first bytes of a folder's files are looked at; a data file that a header names need not
-/// exist. Of an input that cannot be read, it returns the input alone: what is wrong is for its
-/// reader to say.
+/// Returns an input's files, the input first if it is one: a header and its data file, a pattern's
+/// images, or a folder's slices. Looks only at names, headers and the first bytes of a folder's
+/// files; data files that headers name need not exist. An unreadable input is returned alone: its
+/// reader reports the problem.
 std::vector<std::filesystem::path> filesOf(const std::filesystem::path& input);
 
-/// From now on readers refuse inputs that are not confined as requireConfined says. For a whole
-/// program, as memory limits are; not thread-safe.
+/// From now on readers call requireConfined. Process-wide, like memory limits; not thread-safe.
 void confineInputs();
 bool inputsAreConfined();
 
-/// Checks that all files of an input, links followed, lie in its folder, or in the folder that it
-/// is, or below.
+/// Checks that an input's files, links resolved, lie in or below its folder (or the input itself).
 /// @throw Error(kInput) "<input>: got <file>, which is outside of <folder>; expected ..."
 void requireConfined(const std::filesystem::path& input);
 
-/// Checks, where inputs are confined at all, that the folder of an input that a pattern stands for
-/// lies, links followed, in the pattern's own: the one before the first folder of any name.
+/// If inputs are confined: checks that a folder found by a pattern lies, links resolved, in the
+/// pattern's base, the part before its first wildcard folder.
 /// @throw Error(kInput)
 void requireFoundIn(const std::filesystem::path& folder, const std::filesystem::path& input);
 
-/// The same of a file that an input names, where inputs are confined at all.
+/// If inputs are confined: checks a file that the input names in the same way.
 void requireConfined(const std::filesystem::path& input, const std::filesystem::path& named);
 
-/// Returns which of the `count` >= 1 volumes of a file is to be read, from 0 on.
+/// Returns which of the file's `count` >= 1 volumes to read, counted from 0.
 /// @param axes    "dims 64x64x36x120", for messages
-/// @param chosen  what was asked for; empty: the only one
-/// @throw Error(kInput) if there is no such volume, or several and none is chosen
+/// @param chosen  the requested volume; empty: the only one
+/// @throw Error(kInput) if that volume does not exist, or there are several and none is chosen
 std::int64_t chooseVolume(const std::string& where, const std::string& axes, std::int64_t count,
                           const std::optional<std::int64_t>& chosen);
 
-// Signs in names that may stand for something else: numbers (# @ % $), characters (* ? [ ]), parts
-// of an input's name ({ }). Each stands for itself behind a `\`, and in the name of a folder that
-// is there as it is written.
+// Names may contain signs: numbers (# @ % $), characters (* ? [ ]), or braces for parts of an
+// input's name ({ }). A sign is literal after a `\`, and in the name of a folder that exists as
+// written.
 
-/// Whether a backslash at a place makes the sign behind it, or another backslash, stand for itself.
+/// Whether the character at `at` is a backslash that escapes the sign, or backslash, after it.
 bool isEscape(std::string_view text, std::size_t at);
 
-/// Whether any sign, or a backslash before one, is in a text.
+/// Whether a text contains a sign or a backslash.
 bool hasSigns(std::string_view text);
 
-/// Returns a text with 0 in place of signs that stand for themselves, and of their backslashes.
+/// Returns the text with 0 in place of escaped signs and their backslashes.
 std::string maskedEscapes(std::string_view text);
 
-/// Returns a text without the backslashes before signs.
+/// Returns the text without its escaping backslashes.
 std::string withoutEscapes(std::string_view text);
 
-/// What stands between slashes of a path.
 struct NamePart {
-    std::string text;        ///< with the slash behind it
-    bool isFolder = false;   ///< whether there is one
-    bool isLiteral = false;  ///< a folder that is there as it is written, though its name has signs
+    std::string text;        ///< includes the slash that follows
+    bool isFolder = false;   ///< a slash follows
+    bool isLiteral = false;  ///< a folder that exists as written, although its name has signs
 };
 
-/// Returns the parts of a path, which are the path if they are put together.
+/// Returns the parts of a path; concatenated they give the path.
 std::vector<NamePart> partsOfName(const std::string& path);
 
-/// Whether a folder is there.
 bool isFolderThere(const std::string& path);
 
-/// Returns the file that a name of an output means if its signs stand for nothing else.
+/// Returns the file that an output's name means once its escapes are removed.
 std::filesystem::path plainName(const std::filesystem::path& file);
 
-/// The same of an input, which is the file or folder of the very name that was given if there is
-/// one, or if there is neither. In the name of an image stack, backslashes stay for who looks for
-/// its files.
+/// Does the same for an input. Keeps the name if that or neither form exists, and the backslashes
+/// in an image stack's name, which stackPattern reads.
 std::filesystem::path plainInput(const std::filesystem::path& input);
 
 }  // namespace deltasplat

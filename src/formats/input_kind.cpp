@@ -18,8 +18,8 @@ namespace {
 
 using Files = std::vector<std::filesystem::path>;
 
-// Regular files that are not hidden, in the order of their names. What is neither that nor a folder
-// may be a slice that is not there: nobody knows.
+// Returns the visible files, sorted by name. Refuses entries that are neither files nor folders,
+// because they may stand for missing slices.
 Files filesIn(const std::filesystem::path& folder) {
     Files files;
     std::error_code error;
@@ -38,7 +38,7 @@ Files filesIn(const std::filesystem::path& folder) {
 void warnOfOthers(const std::filesystem::path& folder, const Files& all, const Files& taken,
                   const std::string& what, const Listener& listener) {
     if (all.size() == taken.size()) return;
-    // Both are in one order.
+    // Both lists have the same order.
     const auto other = std::mismatch(all.begin(), all.end(), taken.begin(), taken.end()).first;
     const std::string one = what == "images" ? "image" : what;
     listener.warn(folder.string() + ": " +
@@ -55,7 +55,7 @@ Files filesThat(const Files& files, const Test& test) {
     return taken;
 }
 
-// An extension that says what a file is, and does not count it.
+// Returns the extension if it has a letter; a bare number only counts slices.
 std::string kindExtension(const std::filesystem::path& file) {
     const std::string extension = lowerExtension(file);
     const bool word = std::any_of(extension.begin(), extension.end(),
@@ -63,7 +63,7 @@ std::string kindExtension(const std::filesystem::path& file) {
     return word ? extension : "";
 }
 
-// Names of slices may be numbers with dots.
+// Slice names may be numbers with dots.
 std::string nameOfSlice(const std::filesystem::path& file) {
     return kindExtension(file).empty() ? file.filename().string() : nameWithoutExtensions(file);
 }
@@ -72,15 +72,14 @@ bool isNamedAsContents(const std::filesystem::path& file) {
     return lowerCase(file.filename().string()) == "dicomdir";
 }
 
-// Tables of contents are in the same format.
+// Tables of contents are DICOM files too.
 bool isContents(const std::filesystem::path& file) {
     if (isNamedAsContents(file)) return true;
     const std::optional<DicomStart> start = dicomStart(file);
     return start && start->isContents;
 }
 
-// What is named as slices are but has no DICOM header has lost it: a volume without it would look
-// right and be wrong.
+// Refuses non-DICOM files named like slices: without them the volume looks right but is wrong.
 void requireNoCutSlice(const std::filesystem::path& folder, const Files& all, const Files& dicom) {
     std::set<std::string> names;
     std::set<std::string> extensions{".dcm"};
@@ -103,12 +102,11 @@ void requireNoCutSlice(const std::filesystem::path& folder, const Files& all, co
     }
 }
 
-// Slices are in files of any name.
 bool isSlice(const std::filesystem::path& file) {
     return !isNamedAsContents(file) && isDicom(file);
 }
 
-// Whether a folder holds slices, whatever else it holds.
+// Whether a folder holds slices, among other files.
 bool holdsSlices(const std::filesystem::path& folder) {
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
@@ -118,13 +116,13 @@ bool holdsSlices(const std::filesystem::path& folder) {
         try {
             if (isSlice(entry.path())) return true;
         } catch (const Error&) {
-            // It may be anybody's.
+            // An unreadable file may be anything.
         }
     }
     return false;
 }
 
-// Returns the folders in one, in the order of their names. Those that links lead to are elsewhere.
+// Returns the visible subfolders, sorted by name, without links.
 Files foldersIn(const std::filesystem::path& folder) {
     Files folders;
     std::error_code error;
@@ -138,13 +136,12 @@ Files foldersIn(const std::filesystem::path& folder) {
     return folders;
 }
 
-// Files in folders that hold slices.
 struct Study {
     Files all;
     Files dicom;
 };
 
-// Adds the slices below a folder, as studies and discs have them.
+// Adds slices from subfolders, as in studies and on discs.
 void addSlicesBelow(const std::filesystem::path& folder, int depth, Study& study) {
     constexpr int kMostDepth = 8;
     if (depth == kMostDepth) return;
@@ -160,7 +157,7 @@ void addSlicesBelow(const std::filesystem::path& folder, int depth, Study& study
     }
 }
 
-// Several images whose names differ in a number alone, as slices are named.
+// Whether there are several images whose names differ in numbers only, like slices.
 bool areNamedAsStack(const Files& images) {
     return images.size() > 1 &&
            std::all_of(images.begin(), images.end(), [&](const std::filesystem::path& image) {
@@ -169,8 +166,8 @@ bool areNamedAsStack(const Files& images) {
            });
 }
 
-// Returns the slices in a folder, or those below it if it has none or is a disc's. Pictures beside
-// them are passed over, unless they are named as a stack and more than the slices below.
+// Returns a folder's slices, plus those below if it has none or is a disc's. Ignores pictures
+// beside them, unless the pictures are named as a stack and outnumber slices found only below.
 std::optional<InputKind> findSlices(const std::filesystem::path& folder, const Files& all,
                                     const Listener& listener) {
     Study study{all, filesThat(all, isSlice)};
@@ -240,7 +237,7 @@ InputKind findInput(const std::filesystem::path& input, const Listener& listener
         return {&imageFormat(), nameOfPattern(*pattern), stackFiles(input, *pattern)};
     }
     requireRegularFile(input);
-    // A disc's table of contents stands for the disc.
+    // A disc's table of contents means the whole disc.
     if (isNamedAsContents(input) && dicomStart(input))
         return findInFolder(input.has_parent_path() ? input.parent_path() : ".", listener);
     const std::string extension = lowerExtension(input);

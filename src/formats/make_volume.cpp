@@ -56,7 +56,7 @@ void checkDims(const glm::i64vec3& dims) {
     refuse("dims", textOf(dims, "x"), "each from 1 to 2^30, fewer than 2^60 voxels together");
 }
 
-// Where voxels lie: checked strides.
+// Returns the strides, checked against the number of values.
 glm::i64vec3 stridesOf(const MemoryLayout& layout, std::size_t values) {
     const glm::i64vec3& dims = layout.dims;
     if (!layout.strides) {
@@ -98,7 +98,7 @@ void checkLayout(const MemoryLayout& layout) {
         refuse("lengthUnit", "\"" + layout.lengthUnit + "\"", "km, m, mm, um, nm or nothing");
 }
 
-// Of whole numbers a background that is none, or beyond them, could be no voxel's.
+// A background that the integer type cannot hold would match no voxel.
 template <typename T>
 void checkBackground(const std::optional<double>& background) {
     if (!background || std::isnan(*background)) return;
@@ -107,7 +107,7 @@ void checkBackground(const std::optional<double>& background) {
            std::string("a value of type ") + rawTypeName(rawTypeOf<T>()));
 }
 
-// Hands over slices, as they lie in memory or gathered.
+// Passes on layers of slices, in place if contiguous, else gathered.
 template <typename T>
 class LayerGiver {
   public:

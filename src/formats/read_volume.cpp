@@ -85,7 +85,7 @@ void forEachVolume(const std::filesystem::path& file, const ReadOptions& options
 
 namespace {
 
-// The box that OpenVDB's writers note beside a grid.
+// The box that OpenVDB writes into a grid's metadata.
 std::optional<IndexBox> notedBox(const VdbMetadata& metadata) {
     const auto min = metadata.get<glm::ivec3>(openvdb::GridBase::META_FILE_BBOX_MIN);
     const auto max = metadata.get<glm::ivec3>(openvdb::GridBase::META_FILE_BBOX_MAX);
@@ -123,8 +123,7 @@ std::vector<VolumeEntry> listVdb(const std::filesystem::path& path) {
             if (!entry.obstacle.empty()) entry.scalar = false;
             addMetadata(summary.metadata, grid, path.string(), entry);
         } catch (const Error&) {
-            // Grids of other kinds need not be understood; what is wrong with one is said when it
-            // is read.
+            // A bad grid is reported when it is read; other grids remain usable.
         }
         entries.push_back(std::move(entry));
     }
@@ -138,7 +137,7 @@ void describe(const DenseSource& source, VolumeEntry& entry) {
     entry.volumes = source.volumes;
 }
 
-// What is wrong with one series of several is said when it is read.
+// A bad series among several is reported when it is read.
 void describe(const std::filesystem::path& input, const std::string& name, DicomSeries series,
               bool alone, VolumeEntry& entry) {
     entry.name = name;

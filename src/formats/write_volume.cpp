@@ -27,7 +27,7 @@ const DenseFormat& writtenFormat(const std::filesystem::path& file) {
                 writableText());
 }
 
-// Headers are lines of text, and MetaImage takes "%" for the place of a slice's number.
+// Headers are lines of text, and MetaImage replaces "%" by slice numbers.
 void requireWritableName(const std::filesystem::path& dataFile) {
     const std::string name = dataFile.filename().string();
     if (printable(name) == name && name.find('%') == std::string::npos) return;

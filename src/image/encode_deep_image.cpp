@@ -23,17 +23,16 @@
 namespace deltasplat {
 namespace {
 
-/// Adds the samples of a pixel to others as they are stored: with NaN as 0, the rest clamped to
-/// finite numbers, and without those that are nothing then. Halves are rounded so that samples over
-/// each other stay the pixel: each makes up for what was rounded before it. What is not 1 is no 1
-/// where anything lies behind.
-/// @param samples  from the front to the back
+/// Appends a pixel's samples in stored form: NaN becomes 0, other values finite, and empty samples
+/// are dropped. Halves are rounded so that the composited pixel stays right: each compensates for
+/// earlier rounding. Alpha below 1 stays below 1 if samples follow.
+/// @param samples  front to back
 /// @param asFloat  colour and alpha as floats instead of halves
 void addStored(std::span<const DeepSample> samples, bool asFloat, std::vector<DeepSample>& stored);
 
 namespace {
 
-constexpr float kBelowOne = 1 - 0x1p-11f;  // the next half
+constexpr float kBelowOne = 1 - 0x1p-11f;  // the largest half below 1
 
 glm::vec4 finite(const glm::vec4& color, float largest) {
     glm::vec4 result;
@@ -41,7 +40,7 @@ glm::vec4 finite(const glm::vec4& color, float largest) {
     return result;
 }
 
-// Rounds to 11 significant bits, or to 2^-24.
+// Rounds to 11 significant bits, or to multiples of 2^-24.
 float roundedToHalf(double value) {
     if (value == 0) return 0;
     const double step = std::ldexp(1.0, std::max(std::ilogb(value), -14) - 10);
@@ -49,7 +48,7 @@ float roundedToHalf(double value) {
                             double(kLargestHalf)));
 }
 
-// Of one sign with what is meant, or nothing; what is nothing stays so.
+// Clamps to the intended sign; 0 stays 0.
 double ofSameSign(double value, float meant) {
     return meant > 0 ? std::max(value, 0.0) : meant < 0 ? std::min(value, 0.0) : 0.0;
 }
@@ -91,10 +90,9 @@ namespace {
 
 constexpr std::array<const char*, 6> kChannels{"R", "G", "B", "A", "Z", "ZBack"};
 constexpr std::size_t kColors = 4;
-// Rows that are handed over at once: enough for all threads to pack some.
+// Rows per write, enough for all threads to compress.
 constexpr int kBand = 64;
 
-// A sample as the file has it.
 template <typename Color>
 struct StoredSample {
     std::array<Color, kColors> rgba;
@@ -108,8 +106,7 @@ Imf::PixelType typeOf(float) {
     return Imf::FLOAT;
 }
 
-// Rows as OpenEXR takes them: for each pixel how many samples there are and, channel by channel,
-// where the first one's is.
+// Rows for OpenEXR: per pixel the number of samples, per channel the first one's address.
 template <typename Color>
 class Band {
   public:
@@ -120,9 +117,9 @@ class Band {
         parallelFor(rows_.size(), [&](std::size_t y) { fillRow(image, part, y); });
     }
 
-    // @param first  where the first pixel lies in the file's data window
+    // @param first  the first pixel's place in the file's data window
     Imf::DeepFrameBuffer at(const Imath::V2i& first) {
-        // OpenEXR counts from the pixel at 0, 0 on.
+        // OpenEXR's base address is that of pixel 0, 0.
         const auto base = [&](auto& values) {
             const std::ptrdiff_t before = first.y * std::ptrdiff_t(width_) + first.x;
             return reinterpret_cast<char*>(values.data()) -
@@ -197,7 +194,7 @@ std::string encodeDeepExr(const std::filesystem::path& file, const DeepImage& im
         storedBox(options, image.size, [&](const PixelBox& part) { return seenBox(image, part); });
     ExrMemoryStream memory(file);
     writeExr(file, [&] {
-        // Of what deep pictures may have, zips packs best.
+        // The best compression that deep pictures allow.
         const Imf::Header header = exrHeader(options, image.size, box, "zips");
         options.floatExr ? writeBands<float>(image, box, header, memory)
                          : writeBands<half>(image, box, header, memory);

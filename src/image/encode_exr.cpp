@@ -35,18 +35,16 @@ namespace deltasplat {
 
 namespace {
 
-/// Adds channels R, G, B and A.
 void addRgba(bool asFloat, Imf::Header& header);
 
-/// Pixels of a picture as an .exr has them: halves or floats, all of them finite.
+/// Pixels in .exr form: finite halves or floats.
 class ExrRgba {
   public:
     /// Multi-threaded.
-    /// @param box  of the picture
     ExrRgba(const Image& image, const PixelBox& box, bool asFloat);
 
-    /// Says where OpenEXR finds them, for as long as this lives.
-    /// @param first  where the first one lies in the file's data window
+    /// Returns the layout for OpenEXR, valid while this object lives.
+    /// @param first  the first pixel's place in the file's data window
     Imf::FrameBuffer at(const Imath::V2i& first) const;
 
   private:
@@ -55,8 +53,8 @@ class ExrRgba {
     std::vector<float> floats_;  // the same
 };
 
-/// Returns a box of a channel's values, all of them finite.
-/// @param width  of the channel
+/// Returns a box of a channel's values, made finite.
+/// @param width  of the whole channel
 std::vector<float> exrPlane(const std::vector<float>& values, const PixelBox& box, int width);
 
 namespace {
@@ -64,7 +62,7 @@ namespace {
 constexpr std::size_t kChannels = 4;
 constexpr const char* kNames[kChannels]{"R", "G", "B", "A"};
 
-// Whether all channels of a pixel are 0, without a sign.
+// Whether all channels are +0.
 bool isClear(const float* pixel) {
     std::uint64_t bits[2];
     std::memcpy(bits, pixel, sizeof bits);
@@ -79,7 +77,7 @@ std::vector<Value> finite(const Image& image, const PixelBox& box, float largest
         const float* const from = image.pixel(box.min.x, box.min.y + int(y));
         Value* const to = &values[rowValues * y];
         for (std::size_t i = 0; i < rowValues; i += kChannels) {
-            // Most pictures are clear for the most part, as values are already.
+            // Most pixels of most pictures are clear, as `values` is initially.
             if (isClear(from + i)) continue;
             for (std::size_t c = i; c < i + kChannels; ++c)
                 to[c] = Value(finiteValue(from[c], largest));
@@ -127,14 +125,13 @@ std::vector<float> exrPlane(const std::vector<float>& values, const PixelBox& bo
     return plane;
 }
 
-// Channels that lie in a part of their own, if there are several.
+// One part of the file, with some of the channels.
 struct Part {
     std::string name;
     Imf::Header header;
     Imf::FrameBuffer pixels;
 };
 
-// What channels beside the picture's own have in the box.
 class ChannelPlanes {
   public:
     ChannelPlanes(const std::vector<ImageChannel>& channels, const PixelBox& box, int width) {
@@ -152,7 +149,7 @@ class ChannelPlanes {
     std::vector<std::vector<float>> planes_;
 };
 
-// A layer is what stands before the dot.
+// The layer is the name before the dot.
 std::string layerOf(const ImageChannel& channel) {
     return channel.name == "Z" ? "depth" : channel.name.substr(0, channel.name.find('.'));
 }
@@ -234,7 +231,7 @@ class RowsFile : public ExrRowsFile {
     }
 
     void finish() override {
-        // Ends the file.
+        // Writes the end of the file.
         output_.reset();
         check();
         file_.commit();
@@ -249,7 +246,7 @@ class RowsFile : public ExrRowsFile {
     bool asFloat_;
     ExrFileStream stream_;
     std::optional<Imf::OutputFile> output_;
-    Imath::V2i next_{0, 0};  // of the pixels to come, the first
+    Imath::V2i next_{0, 0};  // the next row's first pixel
 };
 
 }  // namespace

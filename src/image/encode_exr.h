@@ -10,11 +10,11 @@
 
 namespace deltasplat {
 
-/// What ExrRows writes to, after its checks.
+/// The writer behind ExrRows, called after its checks.
 class ExrRowsFile {
   public:
     virtual ~ExrRowsFile() = default;
-    /// @param rows  that come next, as wide as the box
+    /// @param rows  the next rows, as wide as the box
     virtual void write(const Image& rows) = 0;
     virtual void finish() = 0;
 };

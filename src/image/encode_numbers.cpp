@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: numpy.lib.format, "NPY format", version 1.0; Definition of NRRD File Format, version 4;
-// MetaIO's "MetaImage" tag reference.
+// Based on: numpy.lib.format 1.0; Definition of NRRD File Format, version 4; MetaIO's MetaImage
+// tags.
 #include "image/encode_numbers.h"
 
 #include <algorithm>
@@ -30,18 +30,18 @@ std::string sizesText(glm::ivec2 size) {
     return std::to_string(size.x) + " " + std::to_string(size.y) + " 1";
 }
 
-// A line for each axis of space, if the unit is known.
+// One entry per spatial axis, if the unit is known.
 std::string unitsLine(const std::string& unit) {
     if (unit.empty()) return "";
     const std::string quoted = " \"" + unit + "\"";
     return "space units:" + quoted + quoted + quoted + "\n";
 }
 
-// The part's first pixel is voxel (0, 0, 0).
+// Voxel (0, 0, 0) is the part's first pixel.
 glm::dmat4 placeOf(const ImageFileOptions& options, const PixelBox& part) {
     glm::dmat4 matrix = options.worldFromPixel.value_or(glm::dmat4(1));
     matrix[3] = matrix * glm::dvec4(part.min, 0, 1);
-    // Adding 0 keeps -0, which is no other place, out of the file.
+    // Adding 0 turns -0 into 0.
     return matrix + 0.0;
 }
 
@@ -59,13 +59,13 @@ std::string nrrdHeader(const ImageFileOptions& options, const PixelBox& part) {
            vector(3) + "\n" + unitsLine(options.lengthUnit) + "\n";
 }
 
-// World space is LPS there, in millimetres.
+// MetaImage's world space is LPS, in millimetres.
 std::string metaImageHeader(const ImageFileOptions& options, const PixelBox& part) {
     glm::dmat4 matrix = placeOf(options, part);
     const double millimetres = millimetresIn(options.lengthUnit);
     if (millimetres > 0) scaleLengths(matrix, millimetres);
     if (options.space == "RAS") {
-        // Adding 0 keeps -0 out of the file.
+        // Subtracting from 0 avoids -0.
         for (int column = 0; column < 4; ++column)
             for (int row = 0; row < 2; ++row) matrix[column][row] = 0.0 - matrix[column][row];
     }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: W3C, "Portable Network Graphics (PNG) Specification", second edition, 2003; RFC 1950
-// (zlib). Deviates from what libpng does in that blocks of rows are packed side by side: each knows
-// the 32 KiB before it, as if all were one.
+// Based on: W3C, "Portable Network Graphics (PNG) Specification", second edition, 2003; RFC 1950.
+// Unlike libpng, packs blocks of rows in parallel, each with the preceding 32 KiB as dictionary.
 #include "image/encode_png.h"
 
 #include <zlib.h>
@@ -25,13 +24,11 @@ namespace {
 using Byte = unsigned char;
 using Bytes = std::vector<Byte>;
 
-// Filtered bytes of a block, and what deflate looks back at: that is taken in anew by each block.
+// Filtered bytes per block, and deflate's window, which each block reloads.
 constexpr std::size_t kBlockBytes = std::size_t{1} << 17;
 constexpr std::size_t kWindow = 32768;
-// Rows that are filtered together.
 constexpr std::size_t kFilteredRows = 32;
-// Takes two thirds of the time of zlib's usual level, for files 2 % (surfaces) to 19 % (dithered
-// fog) larger.
+// Two thirds of the time of zlib's default; files 2 % (surfaces) to 19 % (dithered fog) larger.
 constexpr int kLevel = 4;
 
 void addNumber(std::uint32_t number, std::string& to) {
@@ -56,12 +53,12 @@ void addHeader(const PngPicture& picture, std::string& to) {
     addChunk("IHDR", data, to);
 }
 
-// What sRGB is, for readers that do not know it by its name as well.
+// Describes sRGB by name, and by numbers for readers that do not know the name.
 void addColorSpace(std::string& to) {
     std::string gamma;
     addNumber(45455, gamma);
     addChunk("gAMA", gamma, to);
-    addChunk("sRGB", std::string(1, '\3'), to);  // what is measured, not what pleases
+    addChunk("sRGB", std::string(1, '\3'), to);  // absolute colorimetric
     std::string primaries;
     for (const std::uint32_t number :
          {31270u, 32900u, 64000u, 33000u, 30000u, 60000u, 15000u, 6000u})
@@ -74,7 +71,7 @@ void addText(const std::string& keyword, const std::string& text, std::string& t
         std::all_of(text.begin(), text.end(), [](char c) { return Byte(c) < 0x80; });
     const std::string end(1, '\0');
     if (isAscii) return addChunk("tEXt", keyword + end + text, to);
-    // Not packed; no language, and the keyword untranslated.
+    // Not compressed, no language, no translated keyword.
     addChunk("iTXt", keyword + end + std::string(2, '\0') + end + end + text, to);
 }
 
@@ -86,8 +83,7 @@ int paeth(int left, int above, int corner) {
     return toAbove <= toCorner ? above : corner;
 }
 
-// Rows as they are packed: each a filter's number, and what is left when a pixel is predicted from
-// those beside and above it.
+// Rows to pack: a filter's number, then differences from a prediction by left and upper neighbours.
 class FilteredRows {
   public:
     explicit FilteredRows(const PngPicture& picture)
@@ -112,19 +108,18 @@ class FilteredRows {
     const UnclearedVector<Byte>& bytes() const { return bytes_; }
 
   private:
-    // Filters a row in all five ways, and takes the one that leaves least.
+    // Applies all five filters to a row and keeps the smallest result.
     class Filter {
       public:
         Filter(std::size_t rowBytes, std::size_t pixelBytes)
             : pixel_(pixelBytes), bytes_(rowBytes), row_(pixelBytes + rowBytes), above_(row_) {
             for (Bytes& filtered : filtered_) filtered.resize(rowBytes);
         }
-        // Where a row's bytes are put.
         Byte* row() { return &row_[pixel_]; }
         void next() { std::swap(row_, above_); }
 
         void write(Byte* to) {
-            // Before a row there are pixels of zeros.
+            // Zeros precede a row.
             const Byte* const here = &row_[pixel_];
             const Byte* const left = row_.data();
             const Byte* const above = &above_[pixel_];
@@ -158,7 +153,7 @@ class FilteredRows {
 
         std::size_t pixel_;
         std::size_t bytes_;
-        Bytes row_;  // a pixel of zeros, and the row
+        Bytes row_;  // a pixel of zeros, then the row
         Bytes above_;
         std::array<Bytes, 5> filtered_;
     };
@@ -182,19 +177,17 @@ class FilteredRows {
     UnclearedVector<Byte> bytes_;
 };
 
-// A packed block, and its sum.
 struct Block {
     std::string packed;
     uLong sum = 0;
     std::size_t bytes = 0;
 };
 
-// Gives back what deflate takes.
 struct EndDeflate {
     void operator()(z_stream* stream) const { deflateEnd(stream); }
 };
 
-// Packs a part of all bytes, in such a way that others can be put before and behind.
+// Packs a range of the bytes so that blocks can be concatenated.
 Block pack(const UnclearedVector<Byte>& all, std::size_t begin, std::size_t end) {
     z_stream stream{};
     const auto check = [](int code, int expected) {
@@ -210,7 +203,7 @@ Block pack(const UnclearedVector<Byte>& all, std::size_t begin, std::size_t end)
     Block block;
     block.bytes = end - begin;
     block.sum = adler32_z(1, &all[begin], block.bytes);
-    // Room for the mark that ends a block as well.
+    // Includes room for the flush marker.
     block.packed.resize(deflateBound(&stream, uLong(block.bytes)) + 16);
     stream.next_in = const_cast<Byte*>(&all[begin]);
     stream.avail_in = uInt(block.bytes);
@@ -233,7 +226,7 @@ void addPixels(const PngPicture& picture, std::string& to) {
     uLong sum = 1;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         sum = adler32_combine(sum, blocks[i].sum, z_off_t(blocks[i].bytes));
-        // A window of 32 KiB, and a quick level.
+        // zlib header: 32 KiB window, fast level.
         if (i == 0) blocks[i].packed.insert(0, "\x78\x5E");
         if (i + 1 == blocks.size()) addNumber(std::uint32_t(sum), blocks[i].packed);
         addChunk("IDAT", blocks[i].packed, to);

@@ -63,7 +63,7 @@ void checkExrOptions(const ExrOptions& options, bool isDeep) {
     const std::vector<std::string>& names = exrCompressions();
     if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
         refuseUsage("`compression`", name, namesText());
-    // OpenEXR has none and rle for these as well, which pack worse.
+    // OpenEXR also allows none and rle, which pack worse.
     if (isDeep && !name.empty() && name != "zips")
         refuseUsage("`compression`", name + " of a deep picture", "zips");
     checkLevel(options);
@@ -81,7 +81,7 @@ constexpr Imf::Compression kCompressions[]{
     Imf::NO_COMPRESSION,   Imf::RLE_COMPRESSION,   Imf::ZIP_COMPRESSION, Imf::ZIPS_COMPRESSION,
     Imf::PIZ_COMPRESSION,  Imf::PXR24_COMPRESSION, Imf::B44_COMPRESSION, Imf::B44A_COMPRESSION,
     Imf::DWAA_COMPRESSION, Imf::DWAB_COMPRESSION};
-// OpenEXR's own ones differ from version to version.
+// OpenEXR's defaults differ between versions.
 constexpr int kZipLevel = 4;
 constexpr float kDwaLevel = 45;
 
@@ -101,14 +101,13 @@ void setCompression(const ExrOptions& options, const std::string& usual, Imf::He
     header.zipCompressionLevel() = isDwa ? kZipLevel : int(options.level.value_or(kZipLevel));
     if (!isDwa) return;
     header.dwaCompressionLevel() = float(options.level.value_or(kDwaLevel));
-    // What readers are told.
+    // Tells readers the level.
     header.insert("dwaCompressionLevel", Imf::FloatAttribute(header.dwaCompressionLevel()));
 }
 
 void setMatrix(const char* name, const std::optional<glm::dmat4>& matrix, Imf::Header& header) {
     if (!matrix) return;
-    // OpenEXR multiplies row vectors and stores rows, GLM multiplies columns and stores columns:
-    // the transposed matrix stored the other way round is the same sixteen numbers.
+    // OpenEXR (row vectors, row-major) and GLM (columns, column-major) have the same 16 numbers.
     const glm::mat4 rounded(*matrix);
     Imath::M44f rows;
     std::copy_n(glm::value_ptr(rounded), 16, rows.getValue());
@@ -136,11 +135,11 @@ Imf::Header exrHeader(const ImageFileOptions& options, glm::ivec2 sizePixels, co
     return header;
 }
 
-// OpenEXR's threads are those of the process, and none but the caller unless it is told.
-// OpenEXR 3.1 may wait for ever if some are taken away while others write: only more are made then.
+// OpenEXR's threads are process-wide, and none by default. OpenEXR 3.1 may deadlock if threads are
+// removed while others write, so then the number only grows.
 ExrThreads::ExrThreads() {
     const std::lock_guard lock(writersMutex);
-    // None but the caller.
+    // Only the caller if 0.
     const int threads = threadCount() > 1 ? threadCount() : 0;
     const int before = Imf::globalThreadCount();
     if (threads > before || (threads < before && writers == 0)) Imf::setGlobalThreadCount(threads);

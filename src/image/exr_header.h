@@ -22,15 +22,14 @@
 
 namespace deltasplat {
 
-/// Returns a header with all that is said about a picture, but its channels.
-/// @param sizePixels  of the picture
-/// @param box         what is stored of it
-/// @param usualCompression  where none is asked for
+/// Returns a header with all metadata except the channels.
+/// @param box  the stored part of the picture
+/// @param usualCompression  used unless the options name one
 Imf::Header exrHeader(const ImageFileOptions& options, glm::ivec2 sizePixels, const PixelBox& box,
                       const std::string& usualCompression);
 
-/// While this object lives, OpenEXR has as many threads as the library uses for what the calling
-/// thread asks of it, or more that others need at the time.
+/// While this object lives, OpenEXR has at least as many threads as the library uses for the
+/// calling thread; more if other threads need more.
 class ExrThreads {
   public:
     ExrThreads();
@@ -39,9 +38,8 @@ class ExrThreads {
     ExrThreads& operator=(const ExrThreads&) = delete;
 };
 
-/// Writes by OpenEXR, on as many threads as the library has.
-/// @param file   for messages
-/// @param write  may throw what OpenEXR throws
+/// Writes with OpenEXR, on the library's number of threads.
+/// @param write  may throw OpenEXR's exceptions
 template <typename Write>
 void writeExr(const std::filesystem::path& file, const Write& write) {
     try {
@@ -57,16 +55,14 @@ void writeExr(const std::filesystem::path& file, const Write& write) {
     }
 }
 
-/// Where OpenEXR writes to a string.
 class ExrMemoryStream : public Imf::OStream {
   public:
-    /// @param file  for messages
     explicit ExrMemoryStream(const std::filesystem::path& file) : OStream(file.c_str()) {}
 
     void write(const char text[], int size) override;
     std::uint64_t tellp() override { return at_; }
     void seekp(std::uint64_t at) override { at_ = at; }
-    /// What has been written. Call it once.
+    /// Returns the written bytes. Call it once.
     std::string takeBytes() { return std::move(bytes_); }
 
   private:
@@ -74,18 +70,17 @@ class ExrMemoryStream : public Imf::OStream {
     std::uint64_t at_ = 0;
 };
 
-/// Where OpenEXR writes to a descriptor. No write fails, for OpenEXR says nothing of one that does
-/// when it ends a file: problem() does.
+/// An OpenEXR output stream to a descriptor. Writes never fail, because OpenEXR hides a failure at
+/// the end of a file; problem() reports it.
 class ExrFileStream : public Imf::OStream {
   public:
-    /// @param file  for messages
     ExrFileStream(const std::filesystem::path& file, int descriptor)
         : OStream(file.c_str()), descriptor_(descriptor) {}
 
     void write(const char text[], int size) override;
     std::uint64_t tellp() override { return at_; }
     void seekp(std::uint64_t at) override { at_ = at; }
-    /// What went wrong first, as errno has it, or 0.
+    /// The first failure as an errno, or 0.
     int problem() const { return problem_; }
 
   private:
@@ -94,20 +89,18 @@ class ExrFileStream : public Imf::OStream {
     int problem_ = 0;
 };
 
-/// Returns the least box around all pixels of a part that are not clear, or at which a channel
-/// tells of something; empty if there are none. Multi-threaded.
+/// Returns the least box in `within` of pixels with colour or channel data. Multi-threaded.
 PixelBox seenBox(const Image& image, const PixelBox& within,
                  std::span<const ImageChannel> channels);
-/// The same of pixels that have samples.
+/// Returns the smallest box around pixels with samples.
 PixelBox seenBox(const DeepImage& image, const PixelBox& within);
 
-/// The same of rows whose first and last pixel seen are known.
-/// @param spans  of each row from `first` on pixels [x, y), none if y <= x
+/// Returns the box of rows whose range of seen pixels is known.
+/// @param spans  pixels [x, y) per row, from row `first` on; none if y <= x
 PixelBox boxOfRows(int first, std::span<const glm::ivec2> spans);
 
-/// Returns the part of a picture that is stored: all of it, its region, or what is seen of that, at
-/// least one pixel.
-/// @param seenIn  what is seen in a box
+/// Returns the stored part of a picture: all, its region, or the seen part; at least one pixel.
+/// @param seenIn  returns the seen part of a box
 template <typename SeenIn>
 PixelBox storedBox(const ImageFileOptions& options, glm::ivec2 size, const SeenIn& seenIn) {
     const PixelBox part = options.region.value_or(PixelBox{{0, 0}, size});

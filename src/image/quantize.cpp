@@ -19,9 +19,8 @@ double clampUnit(double value) {
     return value > 0 ? std::min(value, 1.0) : 0.0;
 }
 
-// A level in steps of samples; cut off it is quantized.
-// @param threshold  0 < threshold < 1: which fractions are rounded up, the larger ones; 0.5 is
-// nearest
+// Returns a level in steps of samples, to be truncated.
+// @param threshold  in (0, 1): larger fractions are rounded up; 0.5 rounds to nearest
 template <typename Sample>
 double toSteps(double unit, double threshold) {
     return unit * std::numeric_limits<Sample>::max() + (1 - threshold);
@@ -32,10 +31,10 @@ Sample quantize(double unit, double threshold) {
     return Sample(int(toSteps<Sample>(unit, threshold)));
 }
 
-// The curve of sRGB, nearly: straight between 256 places an octave, from 2^-9 on.
+// The sRGB curve, approximated linearly between 256 points per octave from 2^-9 on.
 class SrgbCurve {
   public:
-    // Farther off than this it is nowhere in 2^-9..1.
+    // Upper bound of its error in 2^-9..1.
     static constexpr double kMostOff = 1e-6;
 
     SrgbCurve() {
@@ -55,7 +54,7 @@ class SrgbCurve {
     static constexpr int kOctaves = 9;
     static constexpr double kLeast = 1.0 / (1 << kOctaves);
     static constexpr int kSteps = 256;
-    static constexpr int kPlaces = kOctaves * kSteps + 2;  // 1 itself, and one beyond
+    static constexpr int kPlaces = kOctaves * kSteps + 2;  // 1 itself, and one more
     static constexpr int kFractionBits = 52 - 8;
     static constexpr double kStep = 1.0 / double(std::uint64_t{1} << kFractionBits);
     static constexpr std::uint64_t kFirst = std::uint64_t{1023 - kOctaves} << 8;
@@ -63,8 +62,7 @@ class SrgbCurve {
     std::array<double, kPlaces> values_{};
 };
 
-// Quantizes a level of sRGB: by the curve's table, where all that it may be off by makes no
-// difference, which saves most of the powers.
+// Quantizes an sRGB level by the table, which saves most powers, unless its error could matter.
 template <typename Sample>
 Sample quantizeSrgb(const SrgbCurve& curve, double linear, double threshold) {
     if (SrgbCurve::knows(linear)) {
@@ -81,14 +79,13 @@ const SrgbCurve& srgbCurve() {
     return curve;
 }
 
-// Spreads thresholds evenly over any neighbourhood: multiples of two numbers whose fractions come
-// close to each other as late as can be (M. Roberts, "The Unreasonable Effectiveness of
-// Quasirandom Sequences", 2018), here in fractions of 2^32.
+// Spreads thresholds evenly, as multiples of two numbers with fractions hard to approximate (M.
+// Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018), in units of 2^-32.
 double thresholdAt(std::size_t x, std::size_t y) {
     constexpr std::uint32_t kAlongX = 3242174889;
     constexpr std::uint32_t kAlongY = 2447445414;
     const std::uint32_t place = std::uint32_t(x) * kAlongX + std::uint32_t(y) * kAlongY;
-    // Of 2^16 steps, from the middle of the first on: whole numbers stay what they are.
+    // Centres of 2^16 steps, so that whole numbers stay unchanged.
     return ((place >> 16) + 0.5) / 65536;
 }
 
@@ -104,13 +101,13 @@ void straightSrgbPixel(const SrgbCurve& curve, const float* rgba, double thresho
         const double straight = clampUnit(rgba[channel] / alpha);
         result[channel] = quantizeSrgb<Sample>(curve, straight, threshold);
     }
-    // The other way round: where colour is rounded up, alpha rather is not.
+    // Inverted: where colour is rounded up, alpha tends to be rounded down.
     result[3] = quantize<Sample>(alpha, 1 - threshold);
 }
 
 }  // namespace
 
-// Calls use(pixel, threshold) for each pixel's number.
+// Calls use(pixel index, threshold) for each pixel.
 template <typename Use>
 void forThresholds(const Image& image, bool dither, const Use& use) {
     parallelFor(std::size_t(image.size.y), [&](std::size_t y) {

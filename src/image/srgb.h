@@ -19,12 +19,10 @@ inline double linearFromSrgb(double v) {
     return v <= 0.04045 ? v / 12.92 : portable::pow((v + 0.055) / 1.055, 2.4);
 }
 
-/// Shares of red, green and blue in how bright linear light is; they add up to 1, so a grey keeps
-/// its value.
+/// Weights of red, green and blue in linear brightness. Their sum is 1, so a grey keeps its value.
 inline constexpr glm::dvec3 kLuminance(0.2126, 0.7152, 0.0722);
 
-/// Names of a picture's own colours, lower case, as configurations of ACES, Blender and studios
-/// call them.
+/// Lower-case names of pictures' own colour space in configurations of ACES, Blender and studios.
 inline constexpr std::array<std::string_view, 10> kLinearRec709{"linear rec.709 (srgb)",
                                                                 "lin_rec709_srgb",
                                                                 "lin_srgb",

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: Stephen Hill's fit of the Academy Color Encoding System's reference rendering and sRGB
-// output transforms, in M. Pettineo and D. Neubelt, "Baking Lab", ACES.hlsl, 2016. Light is scaled
-// beforehand, so that middle grey stays where it is, and the last digit of one weight is another,
-// so that each row of the matrices adds up to 1.
+// Based on: Stephen Hill's fit of the ACES reference rendering and sRGB output transforms, in M.
+// Pettineo and D. Neubelt, "Baking Lab", ACES.hlsl, 2016. Changed: light is scaled first, to keep
+// middle grey, and one weight's last digit, so that each matrix row sums to 1.
 #include "deltasplat/image/tone.h"
 
 #include <algorithm>
@@ -24,9 +23,9 @@ namespace deltasplat {
 
 namespace {
 
-// Keeps 0.18 at 0.18001.
+// Maps 0.18 to 0.18001.
 constexpr double kScale = 1.462;
-// What is brighter comes out white, and squares of this are still finite.
+// Brighter light is white, and squares of this stay finite.
 constexpr double kBrightest = 1e6;
 // Half a level of 8 bits at white.
 constexpr float kSeen = 1.0f / 256;
@@ -35,16 +34,16 @@ struct Rgb {
     double r, g, b;
 };
 
-// What rows have beside the diagonal, each adding up to 1 with it.
+// Off-diagonal elements; each row sums to 1 with the diagonal.
 struct Mixing {
     double rg, rb, gr, gb, br, bg;
 };
 
-// From sRGB's primaries to those that the film sees, less saturated, and from them back.
+// From sRGB's primaries to the film's less saturated ones, and back.
 constexpr Mixing kToFilm = {0.35458, 0.04823, 0.07600, 0.01566, 0.02840, 0.13383};
 constexpr Mixing kFromFilm = {-0.53108, -0.07367, -0.10208, -0.00605, -0.00327, -0.07276};
 
-// Written as differences, of which greys have none: they stay greys to the last bit.
+// Differences vanish for greys, which therefore stay exactly grey.
 Rgb mixed(const Mixing& m, const Rgb& c) {
     return {c.r + m.rg * (c.g - c.r) + m.rb * (c.b - c.r),
             c.g + m.gr * (c.r - c.g) + m.gb * (c.b - c.g),
@@ -152,10 +151,10 @@ std::size_t countBeyondHalf(const Image& image) {
     return beyond;
 }
 
-// Based on: P. Hillman, The Theory of OpenEXR Deep Samples, 2013 (how a volume sample is cut).
+// Based on: P. Hillman, The Theory of OpenEXR Deep Samples, 2013 (splitting a volume sample).
 namespace {
 
-// What is left of a sample before a depth.
+// Returns the part of a sample in front of a depth.
 glm::vec4 cutAt(const DeepSample& sample, float depth) {
     if (depth >= sample.zBack) return sample.rgba;
     if (depth <= sample.z) return glm::vec4(0);

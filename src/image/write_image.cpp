@@ -21,8 +21,7 @@ namespace deltasplat {
 
 namespace {
 
-// The encoded samples, and their copy as the string of them grows: each takes no more than the
-// samples do.
+// The encoded samples, and a copy while their string grows: each at most as large as the samples.
 constexpr double kEncodedCopies = 2;
 
 void requireExr(const std::filesystem::path& file) {
@@ -168,7 +167,7 @@ std::string encodeImage(const std::filesystem::path& file, const Image& image,
     const ImageFormat format = imageFormatOf(file);
     if (format == ImageFormat::kExr) return encodeExr(file, image, options);
     if (isOfNumbers(format)) return encodeNumbers(file, image, options);
-    // The one format that nothing is loaded for, and that is packed by all threads.
+    // PNG needs no module, and all threads pack it.
     if (format == ImageFormat::kPng) {
         return options.bits == 16 ? encodePng<std::uint16_t>(image, options)
                                   : encodePng<std::uint8_t>(image, options);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: Paul Debevec, "A Median Cut Algorithm for Light Probe Sampling", 2005 (regions of a
 // lat-long picture, each cut in two, by sums over rectangles), and Kuntee Viriyothai and Paul
-// Debevec, "Variance Minimization Light Probe Sampling", 2009. As in the latter, what is cut next,
-// and where, is what brings the lights closest to where the light comes from; but distances are
-// those of directions in space, so that neither poles nor the ends of rows are treated apart.
+// Debevec, "Variance Minimization Light Probe Sampling", 2009 (which cut to make next). Unlike
+// there, distances are between directions in space, so poles and row ends need no special case.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -27,10 +26,9 @@
 namespace deltasplat {
 namespace {
 
-// Of the light that comes from some directions.
 struct Moments {
     double energy = 0;  // luminance times solid angle
-    glm::dvec3 way{0};  // directions, times that
+    glm::dvec3 way{0};  // sum of energy times direction
 
     Moments& operator+=(const Moments& other) {
         energy += other.energy;
@@ -42,7 +40,7 @@ struct Moments {
         way -= other.way;
         return *this;
     }
-    // The sum of squared distances from the mean direction, times energy.
+    // The sum of energy times squared distance from the mean direction.
     double spread() const {
         if (!(energy > 0)) return 0;
         return std::max(0.0, energy - glm::dot(way, way) / energy);
@@ -56,8 +54,7 @@ Moments operator-(Moments a, const Moments& b) {
     return a -= b;
 }
 
-// Cells are pixels, or squares of them in a large picture, where sums would take a GiB of memory,
-// and nothing is gained by finer cuts.
+// Pixels, or squares of pixels: sums over more would take a GiB, and finer cuts gain nothing.
 constexpr int kMostCellsAcross = 1024;
 
 struct Cell {
@@ -109,20 +106,19 @@ class Cells {
     std::vector<Cell> cells_;
 };
 
-// Cells [first, end).
 struct Region {
     glm::ivec2 first{0};
     glm::ivec2 end{0};
     double spread = 0;
 
-    // What is cut next is the largest; of equals, the first.
+    // The largest spread is cut next; of equal ones, the first.
     bool operator<(const Region& other) const {
         if (spread != other.spread) return spread < other.spread;
         return first.y != other.first.y ? first.y > other.first.y : first.x > other.first.x;
     }
 };
 
-// The sums of all rectangles of cells.
+// Sums over any rectangle of cells.
 class SummedCells {
   public:
     explicit SummedCells(const Cells& cells)
@@ -140,7 +136,7 @@ class SummedCells {
         return {first, end, sum(first, end).spread()};
     }
 
-    // Cuts a region of more than one cell where the spreads of the parts add up to least.
+    // Cuts a region of more than one cell where the parts' spreads have the least sum.
     std::pair<Region, Region> cut(const Region& region) const {
         std::pair<Region, Region> best;
         double least = std::numeric_limits<double>::infinity();
@@ -191,7 +187,7 @@ std::vector<Region> cutIntoRegions(const Cells& cells, int count) {
 }
 
 Light lightFrom(const Cells& cells, const Region& region, const glm::dmat3& worldFromEnvironment) {
-    // Added up anew, for differences of sums are not exact.
+    // Sum again, because differences of sums are not exact.
     Cell all;
     for (int y = region.first.y; y < region.end.y; ++y) {
         for (int x = region.first.x; x < region.end.x; ++x) {
@@ -203,7 +199,7 @@ Light lightFrom(const Cells& cells, const Region& region, const glm::dmat3& worl
     const glm::dvec3 irradiance = all.color / std::numbers::pi;
     light.strength = std::max({irradiance.r, irradiance.g, irradiance.b});
     if (light.strength > 0) light.color = irradiance / light.strength;
-    // What comes from everywhere comes from above.
+    // Light from all sides counts as light from above.
     const double length = glm::length(all.moments.way);
     if (length > 1e-9 * all.moments.energy) light.direction = -all.moments.way / length;
     light.direction = worldFromEnvironment * light.direction;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: Bruce Walter et al., "Lightcuts: A Scalable Approach to Illumination", 2005 (many
-// lights stand as groups, each with all of its light at one place), with the cuts of Kuntee
-// Viriyothai and Paul Debevec, "Variance Minimization Light Probe Sampling", 2009, in space: what
-// is cut next, and where, brings the lights closest to where the light comes from.
+// Based on: Bruce Walter et al., "Lightcuts: A Scalable Approach to Illumination", 2005 (groups of
+// lights, each with all of its light at one place), with the cuts of Kuntee Viriyothai and Paul
+// Debevec, "Variance Minimization Light Probe Sampling", 2009, in space: each cut brings the lights
+// closest to the places that shine.
 #include "deltasplat/optics/emission_lights.h"
 
 #include <algorithm>
@@ -28,11 +28,10 @@
 namespace deltasplat {
 namespace {
 
-// Of what glows in some places.
 struct Moments {
     double energy = 0;    // luminance
-    glm::dvec3 place{0};  // places in the world, times that
-    double square = 0;    // squares of their distances from where places are counted from, times it
+    glm::dvec3 place{0};  // sum of energy times place in the world
+    double square = 0;    // sum of energy times squared distance from Glow::origin()
 
     Moments& operator+=(const Moments& other) {
         energy += other.energy;
@@ -40,7 +39,7 @@ struct Moments {
         square += other.square;
         return *this;
     }
-    // The sum of squared distances from the mean place, times energy.
+    // The sum of energy times squared distance from the mean place.
     double spread() const {
         if (!(energy > 0)) return 0;
         return std::max(0.0, square - glm::dot(place, place) / energy);
@@ -52,15 +51,15 @@ Moments operator-(const Moments& a, const Moments& b) {
 }
 
 struct GlowingBlock {
-    glm::ivec3 position;  // (x, y, z) of its first voxel, divided by 8
-    glm::dvec3 glow{0};   // radiance on a unit distance, added up over voxels
+    glm::ivec3 position;  // (x, y, z) of the first voxel, divided by 8
+    glm::dvec3 glow{0};   // radiance per unit distance, summed over voxels
     Moments moments;
 };
 
-// Reads what glows at a volume's voxels.
+// Reads the glow at a volume's voxels.
 class Glow {
   public:
-    Glow(const Volume& volume, const Optics& optics) : worldFromIndex_(volume.worldFromIndex) {
+    Glow(const Volume& volume, const Optics& optics) : worldFromIndex_(volume.worldFromIndex()) {
         const double unitDistances = longestWay(volume, optics);
         PlaceSet places;
         for (const MediumPart& part : optics.parts) {
@@ -79,9 +78,9 @@ class Glow {
                       [](const GlowingBlock& block) { return !(block.moments.energy > 0); });
     }
 
-    /// In order of places.
+    /// By PlaceLess.
     const std::vector<GlowingBlock>& blocks() const { return blocks_; }
-    /// From where places are counted, lest they be too large to tell voxels apart.
+    /// Places are relative to this, because large coordinates could not tell voxels apart.
     const glm::dvec3& origin() const { return origin_; }
 
   private:
@@ -133,15 +132,14 @@ struct RankedGroup {
     double spread;
     Group blocks;
 
-    // What is cut next is the largest; of equals, that of the first block.
+    // The largest spread is cut next; of equal ones, the group of the first block.
     bool operator<(const RankedGroup& other) const {
         return spread != other.spread ? spread < other.spread
                                       : blocks.front() > other.blocks.front();
     }
 };
 
-// Cuts a group of more than one block between two planes of blocks, where the spreads of the parts
-// add up to least.
+// Cuts a group of several blocks along a plane of blocks, where the parts' spreads sum to least.
 std::pair<Group, Group> cut(const Group& group, const std::vector<GlowingBlock>& blocks) {
     const Moments all = momentsOf(group, blocks);
     double least = std::numeric_limits<double>::infinity();
@@ -192,8 +190,8 @@ std::vector<Group> cutIntoGroups(const std::vector<GlowingBlock>& blocks, int co
     return whole;
 }
 
-// @param perGlow  what the strength of a light is of radiance on a unit distance of a voxel
-// @param voxel    mean square of distances from its middle within a voxel
+// @param perGlow  strength of a light per radiance on a unit distance of a voxel
+// @param voxel    mean squared distance within a voxel from its middle
 Light lightOf(const Group& group, const Glow& glow, double perGlow, double voxel) {
     const Moments moments = momentsOf(group, glow.blocks());
     glm::dvec3 color(0);
@@ -203,8 +201,8 @@ Light lightOf(const Group& group, const Glow& glow, double perGlow, double voxel
     light.strength = std::min(std::max({color.r, color.g, color.b}), kMostLight);
     light.color = color / light.strength;
     light.positionWorld = glow.origin() + moments.place / moments.energy;
-    // A ball of radius a that glows evenly has squares of distances of 3/5 a^2 on average, and
-    // lights its middle from all sides together as its power does from a / sqrt(3) away.
+    // A glowing ball of radius a has a mean squared distance of 3/5 a^2. It lights its middle as
+    // its whole power would from a / sqrt(3) away.
     const double square = moments.spread() / moments.energy + voxel;
     light.radiusWorld = std::sqrt(5.0 / 9 * square);
     const double most = std::max({light.color.r, light.color.g, light.color.b});
@@ -224,9 +222,8 @@ std::vector<Light> emissionLights(const Volume& volume, const Optics& optics, in
         throw Error(ErrorCode::kUsage, "`emissionLights`", std::to_string(count), "1 or more");
     }
     const Glow glow(volume, optics);
-    const glm::dmat3 voxel(volume.worldFromIndex);
-    // Radiance on a length, times a volume, is power for each direction; a light of strength 1 has
-    // pi of it.
+    const glm::dmat3 voxel(volume.worldFromIndex());
+    // Radiance per length, times volume, is power per direction; a light of strength 1 has pi.
     const double perGlow =
         std::abs(glm::determinant(voxel)) / unitDistanceOf(volume, optics) / std::numbers::pi;
     double square = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: C. Zhang, R. Crawfis, Volumetric Shadows Using Splatting, 2002 (a buffer of light that
-// is carried from slice to slice), with slices of the volume in place of ones that face half-way.
+// Based on: C. Zhang, R. Crawfis, Volumetric Shadows Using Splatting, 2002 (a light buffer carried
+// from slice to slice), with slices of the volume instead of half-way slices.
 #include "lighting/light_depths.h"
 
 #include <algorithm>
@@ -33,50 +33,44 @@
 namespace deltasplat {
 namespace {
 
-/// The way of distant light through slices.
 struct LightWay {
-    /// @param way  that it travels in the world, finite, not 0
+    /// @param way  in the world, finite, not 0
     LightWay(const glm::dmat4& worldFromIndex, const glm::dvec3& way);
 
-    int sliceAxis;      ///< that it is most parallel to, in voxels
-    bool forward;       ///< it travels towards larger slices
-    glm::dvec2 shift;   ///< (u, v) by which it moves from a slice to the next larger one
-    double sliceWorld;  ///< world units that it travels in a slice
+    int sliceAxis;      ///< most parallel to the way, in voxels
+    bool forward;       ///< towards larger slices
+    glm::dvec2 shift;   ///< (u, v) from a slice to the next larger one
+    double sliceWorld;  ///< world units per slice
 };
 
-/// What a block reads from or adds to of the plane that light is swept through.
+/// The nodes of the swept plane that a block reads or writes.
 struct PlaneReach : PlaneBox {
-    int slice;  ///< its first
+    int slice;  ///< first slice of the block
     LitBlocks::Along::Place place;
 };
 
-/// What light comes through on its way to each voxel of a volume, slice by slice from where it
-/// enters: each slice's voxels read what the slices before have added up, then add what they are
-/// themselves. What is added up lies on a plane that moves with the light, so that nothing is
-/// blurred more than twice, by reading and by adding, however many slices there are.
+/// Extinction on the way of distant light to each voxel. In every slice, from where the light
+/// enters, voxels first read the sums of earlier slices and then add their own extinction. The
+/// plane of sums moves with the light, so values are blurred only twice, for any number of slices.
 class LightSweep {
   public:
     /// @param blocks  along the way's slice axis; must outlive this
-    /// @param origin  slice in which the plane lies as voxels do
-    /// @param met     what light meets in a slice on this way
+    /// @param origin  slice in which the plane coincides with the voxels
+    /// @param met     extinction per slice on this way
     LightSweep(const LitBlocks::Along& blocks, const LightWay& way, int origin,
                const MetClasses& met);
 
-    /// Rows that the plane has, 0 without blocks. It can be cut into strips of rows that are swept
-    /// by themselves, without changing anything.
+    /// Rows of the plane, 0 without blocks. Strips of rows can be swept separately.
     std::int64_t rows() const { return lastRow_ - firstRow_; }
-    /// Bytes that sweeping such a strip takes.
     double bytes(std::int64_t first, std::int64_t last) const {
         return double(sizeof(float)) * (double(last) - first + 1) * columns_;
     }
-    /// Returns the blocks in parts that no light goes through from one to another, where these can
-    /// be swept on much smaller planes: then each is to have a sweep of its own, from the same
-    /// origin on, which changes nothing.
+    /// Returns blocks in parts between which no light passes, if separate sweeps of the parts need
+    /// much smaller planes. Sweeps of the parts from the same origin give the same result.
     std::vector<LitBlocks::Along> apart() const;
-    /// Sweeps a strip. Voxels that it does not reach are left to others.
+    /// Sweeps a strip; writes only the voxels that it reaches.
     /// @param first,last  rows [first, last) of [0, rows())
-    /// @param depths      of blocks, `[x][y][z]` each: square roots of extinction, in 1 /
-    ///                    kDepthSteps
+    /// @param depths      per block, `[x][y][z]`: square roots of extinction, in 1 / kDepthSteps
     void run(std::int64_t first, std::int64_t last, std::uint16_t* depths) const;
 
   private:
@@ -99,7 +93,7 @@ class LightSweep {
 
 namespace {
 
-// What a slice of a block adds to the plane.
+// Extinctions that a slice of a block adds to the plane.
 struct MetBlock {
     SweptPlace place;
     int end;  // of rows of the plane
@@ -120,13 +114,13 @@ LightWay::LightWay(const glm::dmat4& worldFromIndex, const glm::dvec3& way) {
     sliceWorld = 1 / std::abs(slices);
 }
 
-// Rows [first, last] of the plane, one more than are the strip's own: voxels read between two.
+// Rows [first, last] of the plane, one row more than the strip: voxels read between two rows.
 struct LightSweep::Strip {
     std::int64_t first;
     std::int64_t last;
     std::uint16_t* depths;
     std::vector<float> plane;     // [last - first + 1][columns]
-    std::vector<MetBlock> toAdd;  // of the slice in hand
+    std::vector<MetBlock> toAdd;  // of the current slice
 };
 
 LightSweep::LightSweep(const LitBlocks::Along& blocks, const LightWay& way, int origin,
@@ -135,7 +129,6 @@ LightSweep::LightSweep(const LitBlocks::Along& blocks, const LightWay& way, int 
     if (!blocks.order.empty()) findRows();
 }
 
-// Which part of the plane any voxel reads from or adds to.
 void LightSweep::findRows() {
     const PlaneBox all = boxOf(reaches());
     firstRow_ = all.least.x;
@@ -184,7 +177,7 @@ void LightSweep::run(std::int64_t first, std::int64_t last, std::uint16_t* depth
     }
 }
 
-// All voxels of the slice read before any adds.
+// All voxels of the slice read before any voxel adds.
 void LightSweep::sweepSlice(const LitBlocks::Along::Group& group, int slice, Strip& strip) const {
     const glm::dvec2 place = placeOf(slice);
     const glm::dvec2 whole = glm::floor(place);
@@ -225,16 +218,16 @@ void LightSweep::sweepSlice(const LitBlocks::Along::Group& group, int slice, Str
 
 namespace {
 
-// What is to be done for several lights, in pieces for threads.
+// Sweeps for several lights, in pieces for threads.
 class Sweeps {
   public:
-    // @param most  beyond which nothing of light is left
+    // @param most  extinction beyond which no light is left
     Sweeps(const LitBlocks& blocks, const Volume& volume, const std::vector<float>& extinctions,
            float most)
         : blocks_(blocks), volume_(volume), extinctions_(extinctions), most_(most) {}
 
     void add(const Light& light, const glm::dvec3& placeIndex);
-    // @param depths  of the lights in the order in which they came, [lights][voxels]
+    // @param depths  in the order of add(), [lights][voxels]
     void run(std::uint16_t* depths) const;
 
   private:
@@ -254,9 +247,9 @@ class Sweeps {
     const std::vector<float>& extinctions_;
     float most_;
     std::array<std::optional<LitBlocks::Along>, 3> along_;
-    std::deque<LitBlocks::Along> apart_;  // of what lies far apart
+    std::deque<LitBlocks::Along> apart_;  // parts that lie far apart
     std::vector<Sweep> sweeps_;
-    std::vector<std::size_t> lights_;  // of sweeps
+    std::vector<std::size_t> lights_;  // [sweeps]
     std::size_t lightCount_ = 0;
 };
 
@@ -270,9 +263,9 @@ void Sweeps::add(const Light& light, const glm::dvec3& placeIndex) {
     if (light.positionWorld) {
         addPoint(placeIndex);
     } else {
-        const LightWay way(volume_.worldFromIndex, light.direction);
+        const LightWay way(volume_.worldFromIndex(), light.direction);
         const auto sweepOf = [&](const LitBlocks::Along& blocks) {
-            return LightSweep(blocks, way, volume_.box.min[way.sliceAxis],
+            return LightSweep(blocks, way, volume_.box().min[way.sliceAxis],
                               MetClasses{extinctions_.data(), float(way.sliceWorld), most_});
         };
         const LightSweep all = sweepOf(along(way.sliceAxis));
@@ -287,19 +280,18 @@ void Sweeps::add(const Light& light, const glm::dvec3& placeIndex) {
     lights_.resize(sweeps_.size(), lightCount_++);
 }
 
-// From very far away, light travels one way wherever exactly it starts, and places would be too
-// large to tell voxels apart.
+// Moves a very far light closer: nearly the same direction, but precise coordinates.
 void Sweeps::addPoint(const glm::dvec3& placeIndex) {
     constexpr double kFarthest = 1e9;
-    const glm::dvec3 middle = 0.5 * (glm::dvec3(volume_.box.min) + glm::dvec3(volume_.box.max));
+    const glm::dvec3 middle = 0.5 * (glm::dvec3(volume_.box().min) + glm::dvec3(volume_.box().max));
     const glm::dvec3 away = placeIndex - middle;
     const glm::dvec3 parts = glm::abs(away);
     const double farthest = std::max({parts.x, parts.y, parts.z});
     const glm::dvec3 place =
         farthest > kFarthest ? middle + kFarthest / farthest * away : placeIndex;
-    const glm::dmat3 world(volume_.worldFromIndex);
+    const glm::dmat3 world(volume_.worldFromIndex());
     for (int axis = 0; axis < 3; ++axis) {
-        const double slice = planeDistance(volume_.worldFromIndex, axis);
+        const double slice = planeDistance(volume_.worldFromIndex(), axis);
         const glm::ivec3 order = sliceOrder(axis);
         const PointPlace light{
             {place[order.x], place[order.y], place[order.z]},
@@ -310,8 +302,8 @@ void Sweeps::addPoint(const glm::dvec3& placeIndex) {
     }
 }
 
-// Enough pieces for every thread to have some work, but none so narrow that rows at its edges,
-// which belong to two, take much of it. What a plane needs of a narrow one may be much less.
+// Enough pieces to keep every thread busy, but none so narrow that shared rows at the edges take
+// much of the work. Narrow pieces of a plane may need much less memory.
 std::vector<Sweeps::Piece> Sweeps::pieces() const {
     constexpr std::size_t kPiecesPerThread = 4;
     constexpr std::int64_t kLeastRows = 16;
@@ -344,7 +336,7 @@ void Sweeps::run(std::uint16_t* depths) const {
         bytes[i] = std::visit([&](const auto& s) { return s.bytes(piece.first, piece.last); },
                               sweeps_[piece.sweep]);
     });
-    // Each thread has a piece in hand.
+    // Each thread holds one piece.
     requireMemory("a plane that light is swept through",
                   *std::max_element(bytes.begin(), bytes.end()) *
                       std::min<double>(threadCount(), double(all.size())));
@@ -356,7 +348,7 @@ void Sweeps::run(std::uint16_t* depths) const {
     });
 }
 
-// In a world unit, [classes].
+// Per world unit, [classes].
 std::vector<float> extinctionsOf(const ClassTable& classes) {
     constexpr double kMost = 1e30;
     std::vector<float> extinctions;
@@ -377,18 +369,18 @@ LightDepths::LightDepths(const Volume& volume, const ClassTable& classes,
         UnclearedArray<std::uint16_t>(voxels * lights.size(), *std::pmr::get_default_resource());
     reaches_.resize(lights.size());
     if (voxels == 0 || lights.empty()) return;
-    // What a voxel of a wall leaves of the octave that is dimmed least. More of it would only make
-    // its shadow wider, as it is shared between points of a plane.
+    // Largest extinction of a wall's voxel that matters to the least dimmed octave. Larger values
+    // would only widen shadows, because nodes of the plane share them.
     constexpr float kMost = 10;
     const float most = std::min(kMost * float(1 << octaves), 1000.0f);
     const std::vector<float> extinctions = extinctionsOf(classes);
     Sweeps sweeps(blocks_, volume, extinctions, most);
-    const glm::dmat3 world(volume.worldFromIndex);
+    const glm::dmat3 world(volume.worldFromIndex());
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const Light& light = lights[i];
         const glm::dvec3 placeIndex =
             glm::inverse(world) *
-            (light.positionWorld.value_or(glm::dvec3(0)) - glm::dvec3(volume.worldFromIndex[3]));
+            (light.positionWorld.value_or(glm::dvec3(0)) - glm::dvec3(volume.worldFromIndex()[3]));
         if (light.positionWorld) reaches_[i] = blocks_.reachFrom(placeIndex, world);
         sweeps.add(light, placeIndex);
     }

@@ -27,8 +27,8 @@ struct PlaneBox {
     }
 };
 
-/// Returns what holds all, of which there has to be one.
-/// @tparam Reach  a PlaneBox: what a block reads from or adds to
+/// Returns the box of all boxes, at least one.
+/// @tparam Reach  a PlaneBox: nodes that a block reads or writes
 template <typename Reach>
 PlaneBox boxOf(const std::vector<Reach>& all) {
     PlaneBox box = all.front();
@@ -39,7 +39,7 @@ PlaneBox boxOf(const std::vector<Reach>& all) {
     return box;
 }
 
-/// Cuts all at every gap along an axis; returns nothing where there is none.
+/// Cuts the boxes at every gap along an axis; returns nothing if there is no gap.
 template <typename Reach>
 std::vector<std::vector<Reach>> cutAtGaps(const std::vector<Reach>& all, int axis) {
     std::vector<std::pair<std::int64_t, std::int64_t>> ends;
@@ -60,9 +60,8 @@ std::vector<std::vector<Reach>> cutAtGaps(const std::vector<Reach>& all, int axi
     return parts;
 }
 
-/// Returns all in parts that no row or column is shared between along some axis, as far as these
-/// are not small. In each they are in the order in which they came.
-/// @param small  places of a plane that is not cut
+/// Splits boxes into parts that are separated by gaps. Each part keeps the boxes' order.
+/// @param small  planes of at most this many nodes are not cut
 template <typename Reach>
 std::vector<std::vector<Reach>> partsAtGaps(std::vector<Reach> all, double small) {
     std::vector<std::vector<Reach>> parts;
@@ -83,22 +82,20 @@ std::vector<std::vector<Reach>> partsAtGaps(std::vector<Reach> all, double small
     return parts;
 }
 
-/// What the light of each of several lights comes through on its way to the voxels of a volume.
+/// Extinction on the ways from several lights to the voxels of a volume.
 class LightDepths {
   public:
     /// Sweeps the volume from each light on. Multi-threaded.
-    /// @param classes  must outlive this, as `volume`
-    /// @param octaves  of light that are to be told from it (Scattering): the more, the less is
-    ///                 taken for nothing
+    /// @param classes  must outlive this, like `volume`
+    /// @param octaves  of Scattering: with more octaves, deeper extinctions still matter
     /// @throw Error(kFailed) if there is not enough memory
     LightDepths(const Volume& volume, const ClassTable& classes, const std::vector<Light>& lights,
                 int octaves);
 
     const LitBlocks& blocks() const { return blocks_; }
-    /// Returns how far voxels are from a point light; of light from far away nothing is known.
+    /// Returns the distances of voxels from a point light; empty for light from far away.
     const LitBlocks::Reach& reach(std::size_t light) const { return reaches_[light]; }
-    /// Returns a block's, `[x][y][z]`: the square root of extinction, in 1 / kDepthSteps.
-    /// @param number  of the block (LitBlocks::find)
+    /// Returns the roots of extinction in block `number`, `[x][y][z]`, in 1 / kDepthSteps.
     const std::uint16_t* of(std::size_t light, std::int64_t number) const {
         return &depths_[512 * (light * blocks_.size() + std::size_t(number))];
     }

@@ -18,8 +18,8 @@ namespace deltasplat {
 LitBlocks::LitBlocks(const Volume& volume, const ClassTable& classes)
     : classOfSlot_(classes.classOfSlot()) {
     // Along x, positions are (x, y, z).
-    const BlockReader reader(*volume.codes, nullptr, 0, classOfSlot_);
-    // A node of the map, and its place in it.
+    const BlockReader reader(*volume.codes(), nullptr, 0, classOfSlot_);
+    // A node of the map and its place in the table.
     constexpr double kMapBytes = 48;
     requireMemory("list of lit blocks",
                   (double(sizeof(Block)) + kMapBytes) * double(reader.blocks().size()));
@@ -87,11 +87,11 @@ void LitBlocks::readClasses(const Block& block, int sliceAxis, std::uint16_t* ou
         out);
 }
 
-// Blocks from the nearest on, until no voxel of the next can be nearer.
+// Visits blocks from the nearest on until no voxel of the next block can be nearer.
 LitBlocks::Reach LitBlocks::reachFrom(const glm::dvec3& placeIndex,
                                       const glm::dmat3& worldFromIndex) const {
     constexpr double kMiddle = 3.5;
-    double radius = 0;  // of a block's voxels about its middle
+    double radius = 0;  // of a block's voxels around its middle
     for (const glm::dvec3 corner :
          {glm::dvec3(1, 1, 1), glm::dvec3(-1, 1, 1), glm::dvec3(1, -1, 1), glm::dvec3(1, 1, -1)})
         radius = std::max(radius, glm::length(worldFromIndex * (kMiddle * corner)));
@@ -119,7 +119,7 @@ LitBlocks::Reach LitBlocks::reachFrom(const glm::dvec3& placeIndex,
 }
 
 std::size_t LitBlocks::Hash::operator()(const glm::ivec3& position) const {
-    // Odd numbers that spread what lies side by side.
+    // Odd numbers that spread neighbours.
     const glm::u64vec3 parts{glm::u32vec3(position)};
     const std::uint64_t hash =
         parts.x * 0x9E3779B97F4A7C15 ^ parts.y * 0xC2B2AE3D27D4EB4F ^ parts.z * 0x165667B19E3779F9;

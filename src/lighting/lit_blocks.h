@@ -16,48 +16,47 @@
 
 namespace deltasplat {
 
-/// The 8x8x8 blocks of a volume of which something can be seen, numbered.
+/// The visible 8x8x8 blocks of a volume, numbered.
 class LitBlocks {
   public:
-    /// @param classes  must outlive the blocks, as `volume`
+    /// @param classes  must outlive the blocks, like `volume`
     LitBlocks(const Volume& volume, const ClassTable& classes);
 
     std::size_t size() const { return blocks_.size(); }
-    /// Returns a block's number; -1 if nothing of it can be seen.
-    /// @param position  (x, y, z) of its first voxel, divided by 8
+    /// Returns a block's number; -1 if none of its voxels is visible.
+    /// @param position  (x, y, z) of the first voxel, divided by 8
     std::int64_t find(const glm::ivec3& position) const;
 
-    /// How far voxels are from a place, in the world, centre to centre.
+    /// World distances of voxels from a place, centre to centre.
     struct Reach {
-        double nearest = 0;   ///< of those that can be seen
-        double farthest = 0;  ///< at least that of any
+        double nearest = 0;   ///< of the visible voxels
+        double farthest = 0;  ///< upper bound for the visible voxels
     };
-    /// Returns it; infinite and 0 if nothing can be seen.
     /// @param placeIndex  (x, y, z)
+    /// @return the distances; infinite and 0 if no voxel is visible
     Reach reachFrom(const glm::dvec3& placeIndex, const glm::dmat3& worldFromIndex) const;
 
-    /// The blocks as light comes upon them along a slice axis.
+    /// The blocks in the order in which light meets them along a slice axis.
     struct Along {
-        /// Those of [begin, end) of `order` have their voxels in the same eight slices.
+        /// Places [begin, end) of `order`: blocks in the same eight slices.
         struct Group {
             int firstSlice;
             std::size_t begin;
             std::size_t end;
         };
-        /// A block.
         struct Place {
             std::size_t number;
-            glm::ivec2 first;  ///< (u, v) of its first voxel
+            glm::ivec2 first;  ///< (u, v) of the first voxel
         };
         int sliceAxis;
         std::vector<Place> order;   ///< by slice, u and v
         std::vector<Group> groups;  ///< by slice
-        glm::ivec2 low{0};          ///< (u, v): the smallest of any block's first voxel
-        glm::ivec2 high{0};         ///< and the largest
-        /// `[block][slice][u][v]`; of all blocks, whichever these are.
+        glm::ivec2 low{0};          ///< smallest (u, v) of any block's first voxel
+        glm::ivec2 high{0};         ///< largest likewise
+        /// `[block][slice][u][v]` of all blocks, even if `order` has only some.
         std::shared_ptr<const UnclearedArray<std::uint16_t>> classes;
 
-        /// Adds a block, whose slice is none before those that there are.
+        /// Adds a block. Its slice must not be below the slices of earlier blocks.
         void add(int firstSlice, const Place& place);
     };
     /// Multi-threaded.
@@ -66,9 +65,9 @@ class LitBlocks {
 
   private:
     struct Block {
-        glm::ivec3 position;         // (x, y, z) of its first voxel, divided by 8
+        glm::ivec3 position;         // (x, y, z) of the first voxel, divided by 8
         const CodeTree::Leaf* leaf;  // null for a piece of a tile
-        Slot tileClass;              // of all voxels, if there is no leaf
+        Slot tileClass;              // of all voxels if there is no leaf
     };
     struct Hash {
         std::size_t operator()(const glm::ivec3& position) const;

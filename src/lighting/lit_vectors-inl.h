@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of voxels that are lit, for the kernels of each SIMD level: the same bits at all of them.
+// Vectors of lit voxels for the kernels of each SIMD level, with the same bits at all levels.
 #if defined(DELTASPLAT_LIT_VECTORS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DELTASPLAT_LIT_VECTORS_INL_H_
 #undef DELTASPLAT_LIT_VECTORS_INL_H_
@@ -44,13 +44,13 @@ HWY_INLINE Vector3 sum(const Vector3& a, const Vector3& b) {
     return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
 }
 
-// Of length 1; what has none stays as it is.
+// Scales to length 1; a zero vector stays 0.
 HWY_INLINE Vector3 normalized(const Vector3& a) {
     const auto length = hn::Sqrt(dot(a, a));
     return scaled(a, hn::Div(constant(1), hn::Max(length, constant(1e-30))));
 }
 
-// The ways of a vector of voxels, from voxel n on, as long as they are.
+// The ways of a vector of voxels from voxel n on, at full length.
 HWY_INLINE Vector3 wholeWaysFrom(const WaysToEye& ways, int n) {
     const FullTag tag;
     const hn::RebindToSigned<FullTag> whole;
@@ -61,12 +61,12 @@ HWY_INLINE Vector3 wholeWaysFrom(const WaysToEye& ways, int n) {
                sum(scaled(vectorOf(ways.alongU), u), scaled(vectorOf(ways.alongV), v)));
 }
 
-// The same of length 1.
+// The ways at length 1.
 HWY_INLINE Vector3 waysFrom(const WaysToEye& ways, int n) {
     return normalized(wholeWaysFrom(ways, n));
 }
 
-// The premultiplied colours of a vector of voxels: those of their classes.
+// The premultiplied class colours of a vector of voxels.
 HWY_INLINE void loadColors(const glm::vec4* colors, const std::uint16_t* classes,
                            Vector (&rgba)[4]) {
     const FullTag tag;

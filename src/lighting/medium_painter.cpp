@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: N. Max, Optical Models for Direct Volume Rendering, 1995 (absorption plus emission:
-// what shines evenly along a way of depth t, of which 1 - exp(-t) is swallowed, comes out of it
-// with (1 - exp(-t)) / t of itself).
+// Based on: N. Max, Optical Models for Direct Volume Rendering, 1995 (absorption plus emission: an
+// even glow along a way of depth t leaves it with (1 - exp(-t)) / t of its light).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,13 +19,13 @@
 namespace deltasplat {
 namespace {
 
-/// What a medium of several parts shows: extinctions add up, and what shines is dimmed by all of
-/// them. Of each voxel look i, or look 0 and a colour factor, are kept in the bits of its own look.
+/// Light of a medium of several parts. Extinctions add up and dim all glow. A voxel's look has in
+/// bits[i] the number of part i's look or, if i >= 1, a colour factor.
 class MediumLight : public LookLight {
   public:
-    /// @param inner   what the volume alone looks like
+    /// @param inner   light of the volume alone
     /// @param parts   must outlive the light
-    /// @param factor  what colour factors are shares of; null: there are none
+    /// @param factor  largest colour factor; null: there are none
     MediumLight(std::unique_ptr<const LookLight> inner, const std::vector<PartLooks>& parts,
                 const glm::dvec3* factor, const ClassTable& classes);
 
@@ -35,19 +34,18 @@ class MediumLight : public LookLight {
                      WordUnits& colors) const override;
 
   private:
-    // What a look of a part adds in a step; colours in units.
+    // A look of a part, per step; colours in units.
     struct StepLook {
-        float depth;      // extinction on it
-        glm::vec3 color;  // of what swallows light, not multiplied by opacity
+        float depth;      // extinction
+        glm::vec3 color;  // of the absorbing matter, not multiplied by opacity
         glm::vec3 glow;
     };
-    // What a class has in a step.
     struct StepClass {
         float depth;
-        float dimmed;  // share of what shines all along it that comes out of it
+        float dimmed;  // share of an even glow that leaves the step
     };
 
-    // Moves nothing before the base class is made.
+    // Evaluates unitsFor() before it moves `inner`.
     MediumLight(const VoxelUnits& units, std::unique_ptr<const LookLight>&& inner,
                 const std::vector<PartLooks>& parts, const glm::dvec3* factor,
                 const ClassTable& classes);
@@ -56,9 +54,9 @@ class MediumLight : public LookLight {
     void addParts(const std::uint16_t* classes, const OwnLook* looks, WordUnits& colors) const;
 
     std::unique_ptr<const LookLight> inner_;
-    glm::vec4 fromInner_;  // what units of the inner light are in those of this
+    glm::vec4 fromInner_;  // units of the inner light in units of this light
     bool hasFactors_;
-    bool absorbs_ = false;  // whether any part does
+    bool absorbs_ = false;  // whether any part absorbs
     glm::vec3 factor_{1};
     std::vector<std::vector<StepLook>> looks_;  // [parts][looks]
     std::vector<StepClass> classes_;
@@ -66,9 +64,9 @@ class MediumLight : public LookLight {
 
 namespace {
 
-// What is more opaque cannot be told from it.
+// Deeper extinction looks the same.
 constexpr double kMostDepth = 1e30;
-// A step that adds more than this has parts that are too coarsely told on one plane: to 2^-25.
+// With brighter steps one plane is too coarse for the other parts: 2^-25.
 constexpr double kMostOnPlane = 64;
 
 double dimmedBy(double depth) {
@@ -84,7 +82,7 @@ double depthOf(const PartLook& look, double unitDistances) {
     return look.extinction > 0 ? std::min(look.extinction * unitDistances, kMostDepth) : 0;
 }
 
-// The largest that a channel gets in a step, beside what the inner light shows.
+// The largest channels that the parts add in a step to the inner light.
 glm::dvec4 mostOf(const std::vector<PartLooks>& parts, double unitDistances) {
     glm::dvec4 most(0);
     for (const PartLooks& part : parts) {
@@ -95,7 +93,7 @@ glm::dvec4 mostOf(const std::vector<PartLooks>& parts, double unitDistances) {
     return most;
 }
 
-// What a unit of one light is of another's, at least of any channel.
+// The smallest ratio, of any channel, of an inner unit to a unit.
 double smallestShare(const VoxelUnits& inner, const VoxelUnits& units) {
     double share = 1;
     for (int c = 0; c < 4; ++c)
@@ -103,7 +101,7 @@ double smallestShare(const VoxelUnits& inner, const VoxelUnits& units) {
     return share;
 }
 
-// Units for all that a voxel may show.
+// Units that hold all that a voxel may show.
 VoxelUnits unitsFor(const LookLight& inner, const std::vector<PartLooks>& parts,
                     const glm::dvec3* factor, const ClassTable& classes) {
     VoxelUnits units = inner.units();
@@ -180,7 +178,7 @@ void MediumLight::lightVoxels(const WordPlace& place, const std::uint16_t* class
     }
 }
 
-// Of parts that only shine, classes tell how dim they become.
+// If parts only shine, the classes determine how much they are dimmed.
 void MediumLight::addGlow(const std::uint16_t* classes, const OwnLook* looks,
                           WordUnits& colors) const {
     for (std::size_t part = 0; part < looks_.size(); ++part) {
@@ -193,7 +191,7 @@ void MediumLight::addGlow(const std::uint16_t* classes, const OwnLook* looks,
     }
 }
 
-// Every part has the share of the common opacity that its depth is of the common depth.
+// Every part has a share of the common opacity in proportion to its depth.
 void MediumLight::addParts(const std::uint16_t* classes, const OwnLook* looks,
                            WordUnits& colors) const {
     const double opaque = units().unitsOfOpaque();
@@ -212,7 +210,7 @@ void MediumLight::addParts(const std::uint16_t* classes, const OwnLook* looks,
         }
         if (!isAny) continue;
         const double dimmed = dimmedBy(depth);
-        // Of what is its own, as much less as it is dimmed more than by itself.
+        // The volume's own light was dimmed by its own depth already.
         const double left = dimmed / classes_[classes[n]].dimmed;
         for (int c = 0; c < 3; ++c) {
             float& channel = colors[std::size_t(c)][n];
@@ -226,7 +224,7 @@ void MediumLight::addParts(const std::uint16_t* classes, const OwnLook* looks,
 
 namespace {
 
-// Grids that colours are multiplied by.
+// Grids of colour factors.
 class ColorReader {
   public:
     ColorReader(const ColorGrids& grids, const glm::dmat4& worldFromIndex)
@@ -235,15 +233,15 @@ class ColorReader {
             samplers_.emplace_back(*grid, worldFromIndex, PartSampler::Around::kNothing);
             std::vector<double>& values = values_.emplace_back(kSlotCount, 1.0);
             const Volume& levels = samplers_.back().levels();
-            for (std::size_t code = 0; code < levels.histogram.size(); ++code)
-                if (levels.histogram[code] != 0)
-                    values[code + 1] = levels.codeBook.valueOf(Code(code));
+            for (std::size_t code = 0; code < levels.histogram().size(); ++code)
+                if (levels.histogram()[code] != 0)
+                    values[code + 1] = levels.codeBook().valueOf(Code(code));
         }
     }
 
     const glm::dvec3& largest() const { return largest_; }
 
-    // Paints what can be seen; where no colours are, they are white.
+    // Paints visible voxels; without a colour they are white.
     void paint(const BlockPlace& place, std::span<const std::uint16_t, 512> classes,
                std::span<OwnLook, 512> looks) const {
         std::array<std::array<Slot, 512>, 3> slots;
@@ -272,13 +270,13 @@ class MediumPainter : public VoxelPainter {
     MediumPainter(const Volume& volume, const Optics& optics) : parts_(optics.parts) {
         const double unitDistances = longestWay(volume, optics);
         for (const MediumPart& part : parts_) {
-            const PartSampler& sampler = samplers_.emplace_back(*part.volume, volume.worldFromIndex,
-                                                                PartSampler::Around::kBackground);
+            const PartSampler& sampler = samplers_.emplace_back(
+                *part.volume, volume.worldFromIndex(), PartSampler::Around::kBackground);
             looks_.push_back(lookUpPart(part, sampler.levels(), unitDistances));
         }
-        if (optics.colorGrids) colors_.emplace(*optics.colorGrids, volume.worldFromIndex);
+        if (optics.colorGrids) colors_.emplace(*optics.colorGrids, volume.worldFromIndex());
         findMore();
-        // Light is swept through all there is, whichever parts of it shine.
+        // The sweep needs the whole box, whichever parts shine.
         if (optics.scattering && !volume.empty())
             inner_ = makeScatterPainter(room_.emplace(withRoom(volume, more_)), optics);
     }
@@ -332,8 +330,8 @@ class MediumPainter : public VoxelPainter {
         more_.positions.assign(places.begin(), places.end());
     }
 
-    std::optional<Volume> room_;                 // what light is swept through
-    std::unique_ptr<const VoxelPainter> inner_;  // null: voxels look as their classes do
+    std::optional<Volume> room_;                 // the volume that light is swept through
+    std::unique_ptr<const VoxelPainter> inner_;  // null: voxels look like their classes
     std::vector<MediumPart> parts_;
     std::vector<PartSampler> samplers_;  // [parts]
     std::vector<PartLooks> looks_;       // [parts]

@@ -27,12 +27,12 @@ namespace deltasplat {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-// How far from a whole voxel the voxels of two grids may lie that are the same.
+// Tolerance, in voxels, for two grids to count as the same.
 constexpr double kSameWithin = 1e-3;
-// Voxels that fall into one along an axis, of which the mean is taken; of more, as many.
+// Most samples per axis for the mean of a finer grid's voxels.
 constexpr int kMostSamples = 8;
 
-// The most that any voxel of a box is moved by a map, beyond a move by whole voxels.
+// The largest movement of any voxel of a box, apart from a movement by whole voxels.
 double moveWithin(const glm::dmat4& map, const IndexBox& box) {
     double most = 0;
     for (int corner = 0; corner < 8; ++corner) {
@@ -53,7 +53,6 @@ bool isNear(const glm::dvec3& at) {
     return std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) < kFar;
 }
 
-// The voxels of a block of codes whose slots are seen.
 IndexBox boxOfSeen(const CodeBlock& block, std::span<const Slot> slotMap) {
     const glm::ivec3 first = 8 * block.position;
     if (!block.leaf) return {first, first + 7};
@@ -71,7 +70,7 @@ IndexBox boxOfSeen(const CodeBlock& block, std::span<const Slot> slotMap) {
     return box;
 }
 
-// How many voxels of a part fall into one of the volume's, along each axis of the volume.
+// Voxels of a part per voxel of the volume, along each axis of the volume.
 glm::dvec3 voxelsPerStep(const glm::dmat4& partFromIndex) {
     glm::dvec3 voxels;
     for (int axis = 0; axis < 3; ++axis)
@@ -79,10 +78,9 @@ glm::dvec3 voxelsPerStep(const glm::dmat4& partFromIndex) {
     return voxels;
 }
 
-// From this on they are averaged.
+// From this ratio on voxels are averaged.
 constexpr double kFinerFrom = 1.5;
 
-// Of how many voxels the mean is taken along each axis.
 glm::ivec3 samplesOf(const glm::dmat4& partFromIndex) {
     const glm::dvec3 voxels = voxelsPerStep(partFromIndex);
     glm::ivec3 samples(1);
@@ -96,17 +94,17 @@ glm::ivec3 samplesOf(const glm::dmat4& partFromIndex) {
 }  // namespace
 
 PartFit fitOf(const Volume& part, const glm::dmat4& worldFromIndex) {
-    const glm::dmat4 partFromIndex = glm::inverse(part.worldFromIndex) * worldFromIndex;
-    // Voxels of the volume that the part may be read at.
+    const glm::dmat4 partFromIndex = glm::inverse(part.worldFromIndex()) * worldFromIndex;
+    // Map to the voxels of the volume that read the part.
     const glm::dmat4 indexFromPart = glm::inverse(partFromIndex);
     const glm::dvec3 away = glm::round(glm::dvec3(indexFromPart[3]));
-    if (isNear(away) && moveWithin(indexFromPart, part.box) < kSameWithin) return PartFit::kSame;
+    if (isNear(away) && moveWithin(indexFromPart, part.box()) < kSameWithin) return PartFit::kSame;
     const bool isFiner =
         glm::any(glm::greaterThanEqual(voxelsPerStep(partFromIndex), glm::dvec3(kFinerFrom)));
     return isFiner ? PartFit::kFiner : PartFit::kBetween;
 }
 
-// Reads single voxels. Not for several threads at once.
+// Reads single voxels. Not thread-safe.
 class PartSampler::Reader {
   public:
     explicit Reader(const CodeTree& codes) : accessor_(codes.tree()) {}
@@ -123,23 +121,20 @@ class PartSampler::Reader {
 
 PartSampler::PartSampler(const Volume& part, const glm::dmat4& worldFromIndex, Around around)
     : part_(part),
-      codes_(part.codes ? part.codes : std::make_shared<const CodeTree>()),
+      codes_(part.codes() ? part.codes() : std::make_shared<const CodeTree>()),
       around_(around),
-      partFromIndex_(glm::inverse(part.worldFromIndex) * worldFromIndex),
+      partFromIndex_(glm::inverse(part.worldFromIndex()) * worldFromIndex),
       fit_(fitOf(part, worldFromIndex)),
       samples_(samplesOf(partFromIndex_)),
-      background_(part.hasBackground ? part.background : 0) {
+      background_(part.hasBackground() ? part.background() : 0) {
     makeLevels();
 }
 
 void PartSampler::makeLevels() {
-    levels_ = part_;
-    levels_.codes = nullptr;
-    levels_.uncut = nullptr;
-    levels_.source = nullptr;
+    levels_ = part_.withoutVoxels();
     if (fit_ == PartFit::kSame) return;
-    CodeBook::Range range{std::min(part_.valueMin, background_),
-                          std::max(part_.valueMax, background_), 0, CodeBook::Values::kDouble};
+    CodeBook::Range range{std::min(part_.valueMin(), background_),
+                          std::max(part_.valueMax(), background_), 0, CodeBook::Values::kDouble};
     const double most = std::max({std::abs(range.low), std::abs(range.high), 1e-300});
     range.least = std::max(most * 0x1p-22, 1e-306);
     double error = 1.25e-4;
@@ -148,16 +143,18 @@ void PartSampler::makeLevels() {
         book = CodeBook::relative(range, error);
         error *= 1.25;
     }
-    levels_.codeBook = *book;
-    levels_.histogram.assign(kCodeCount, 0);
-    std::fill_n(levels_.histogram.begin(), levels_.codeBook.table->size(), std::uint64_t{1});
-    encoder_.emplace(levels_.codeBook);
+    VolumeData levels = levels_.data();
+    levels.codeBook = *book;
+    levels.histogram.assign(kCodeCount, 0);
+    std::fill_n(levels.histogram.begin(), book->table->size(), std::uint64_t{1});
+    levels_ = Volume(std::move(levels));
+    encoder_.emplace(levels_.codeBook());
     valueOfCode_.resize(kCodeCount, kNothing);
-    for (std::size_t code = 0; code < part_.histogram.size(); ++code)
-        if (part_.histogram[code] != 0) valueOfCode_[code] = part_.codeBook.valueOf(Code(code));
+    for (std::size_t code = 0; code < part_.histogram().size(); ++code)
+        if (part_.histogram()[code] != 0) valueOfCode_[code] = part_.codeBook().valueOf(Code(code));
 }
 
-// Between the eight voxels around a place.
+// Interpolates between the eight voxels around a place.
 double PartSampler::valueOf(const Reader& reader, const glm::dvec3& at) const {
     const glm::dvec3 first = glm::floor(at);
     const glm::dvec3 share = at - first;
@@ -177,7 +174,7 @@ double PartSampler::valueOf(const Reader& reader, const glm::dvec3& at) const {
     return around_ == Around::kBackground ? sum : sum / active;
 }
 
-// Of the voxels nearest to evenly spaced places.
+// Averages the voxels nearest to evenly spaced places.
 double PartSampler::meanOf(const Reader& reader, const glm::dvec3& at) const {
     double sum = 0;
     int active = 0;
@@ -219,7 +216,7 @@ void PartSampler::read(const BlockPlace& place, std::span<Slot, 512> slots) cons
     }
 }
 
-// The volume's voxels that may read any of a box of the grid's.
+// Returns the volume's voxels that may read any voxel of a box of the grid.
 IndexBox PartSampler::reachOf(const IndexBox& box) const {
     const glm::dmat4 indexFromPart = glm::inverse(partFromIndex_);
     glm::dvec3 low(std::numeric_limits<double>::infinity());
@@ -230,7 +227,7 @@ IndexBox PartSampler::reachOf(const IndexBox& box) const {
         high = glm::max(high, at);
     }
     if (fit_ == PartFit::kSame) return {glm::ivec3(glm::round(low)), glm::ivec3(glm::round(high))};
-    // A voxel of the grid on each side, and half of the volume's, of which the mean is taken.
+    // One voxel of the grid per side and, for means, half a voxel of the volume.
     for (int axis = 0; axis < 3; ++axis) {
         double voxel = 0.5;
         for (int i = 0; i < 3; ++i) voxel += std::abs(indexFromPart[i][axis]);
@@ -241,8 +238,8 @@ IndexBox PartSampler::reachOf(const IndexBox& box) const {
     return {glm::ivec3(glm::clamp(low, -far, far)), glm::ivec3(glm::clamp(high, -far, far))};
 }
 
-// Returns a map [kSlotCount] that leaves the slots of codes that are seen; of all, if what is seen
-// lies between values that are not and that may be mixed.
+// Returns a map [kSlotCount] of the visible codes. All codes count as visible if interpolation
+// between invisible values may give visible ones.
 std::vector<Slot> PartSampler::seenCodes(std::span<const Slot> slotMap) const {
     std::vector<int> before(kSlotCount + 1, 0);
     for (std::size_t slot = 0; slot < kSlotCount; ++slot)
@@ -255,8 +252,8 @@ std::vector<Slot> PartSampler::seenCodes(std::span<const Slot> slotMap) const {
     bool bothSides = false;
     std::vector<Slot> seen(kSlotCount, kEmptySlot);
     std::vector<Slot> all = seen;
-    for (std::size_t code = 0; code < part_.histogram.size(); ++code) {
-        if (part_.histogram[code] == 0) continue;
+    for (std::size_t code = 0; code < part_.histogram().size(); ++code) {
+        if (part_.histogram()[code] == 0) continue;
         const std::size_t level = levelOf(code);
         all[code + 1] = Slot(code + 1);
         if (slotMap[level] != kEmptySlot) {
@@ -292,35 +289,35 @@ void PartSampler::addBlocksSeen(std::span<const Slot> slotMap, PlaceSet& places,
 }
 
 Volume withRoom(const Volume& volume, const BlockSet& more) {
-    Volume wide = volume;
-    if (more.positions.empty()) return wide;
+    if (more.positions.empty()) return volume;
+    VolumeData wide = volume.data();
     if (!wide.codes) wide.codes = std::make_shared<const CodeTree>();
     if (volume.empty()) wide.activeCount = 1;
-    wide.box = volume.empty() ? more.box : boxOfBoth(volume.box, more.box);
-    return wide;
+    wide.box = volume.empty() ? more.box : boxOfBoth(volume.box(), more.box);
+    return Volume(std::move(wide));
 }
 
 namespace {
 
 constexpr std::size_t kMostLooks = 65536;
 
-// Gives the looks of all values that there are, in increasing order, numbers.
+// Numbers the looks of all values that occur, in increasing order of values.
 template <typename LookOf>
 PartLooks numbered(const Volume& levels, const LookOf& lookOf) {
     PartLooks result{{PartLook{}}, std::vector<std::uint16_t>(kSlotCount)};
-    for (std::size_t code = 0; code < levels.histogram.size(); ++code) {
-        if (levels.histogram[code] == 0) continue;
-        const PartLook look = lookOf(levels.codeBook.valueOf(Code(code)));
+    for (std::size_t code = 0; code < levels.histogram().size(); ++code) {
+        if (levels.histogram()[code] == 0) continue;
+        const PartLook look = lookOf(levels.codeBook().valueOf(Code(code)));
         if (look == PartLook{}) continue;
         const bool isNew = result.looks.size() == 1 || !(look == result.looks.back());
-        // Where all values look different, the last two look alike.
+        // If there are too many looks, the last ones share a number.
         if (isNew && result.looks.size() < kMostLooks) result.looks.push_back(look);
         result.ofSlot[code + 1] = std::uint16_t(result.looks.size() - 1);
     }
     return result;
 }
 
-// Of the grid, not of its levels.
+// Range of the grid itself, not of its levels.
 glm::dvec2 rangeOf(const MediumPart& part) {
     return part.range.value_or(defaultRange(*part.volume));
 }

@@ -10,8 +10,7 @@ namespace deltasplat {
 
 void addToNodes(const NodesOnBlock& rows, const NodesOnBlock& columns, const float* own,
                 float share, float* out, std::size_t pitch) {
-    // Rows of voxels as the columns of nodes see them, with none before the first and behind the
-    // last.
+    // Rows of voxels at the columns of nodes, with zeros before the first and after the last.
     std::array<std::array<float, NodesOnBlock::kMost>, 10> seen;
     seen.front().fill(0);
     seen.back().fill(0);

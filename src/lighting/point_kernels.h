@@ -10,14 +10,13 @@
 
 namespace deltasplat {
 
-/// How many nodes a plane has at least for a slope of 1 (PointSweep): near the light, where voxels
-/// are large, there are more than voxels.
+/// Least nodes for a slope of 1 (PointSweep): voxels near the light appear large.
 inline constexpr int kLeastNodes = 32;
 
-/// Nodes that lie on a block, of a row or a column: before[n] is the voxel before node n, 0 being
-/// the one before the block and 8 its last, and share[n] how far it is on the way to the next.
+/// Nodes of a row or column on a block. before[n] is the voxel before node n: 0 lies before the
+/// block, 8 is the block's last voxel. share[n] is node n's place on the way to the next voxel.
 struct NodesOnBlock {
-    /// All nodes of a plane that is doubled for nothing yet; later two for each voxel.
+    /// All nodes of the initial plane; later at most two per voxel.
     static constexpr std::size_t kMost = 2 * kLeastNodes + 4;
     static_assert(kMost > 2 * 9 + 2);
     std::int64_t first = 0;  ///< node
@@ -26,27 +25,25 @@ struct NodesOnBlock {
     std::array<float, kMost> share;
 };
 
-/// Adds what light comes through in a slice of a block: each node what there is where it lies,
-/// between voxels, and none beyond the block.
-/// @param out    the first node
-/// @param own    [64]
-/// @param share  of the slice
+/// Adds the extinctions in a slice of a block, interpolated at each node and 0 beyond the block.
+/// @param out  the first node
+/// @param own  [64], of which `share` counts
 void addToNodes(const NodesOnBlock& rows, const NodesOnBlock& columns, const float* own,
                 float share, float* out, std::size_t pitch);
 
-/// Where voxels of a row or a column lie between nodes, [begin, end) of eight.
+/// Voxels [begin, end) of the eight of a row or column, between nodes.
 struct VoxelsBetweenNodes {
     int begin = 0;
     int end = 0;
     std::array<std::ptrdiff_t, 8> before;  ///< node
-    std::array<float, 8> share;            ///< of the way to the next: 0..1
-    std::array<glm::vec3, 8> way;          ///< of light in a slice: its part by this place
+    std::array<float, 8> share;            ///< of the way to the next node: 0..1
+    std::array<glm::vec3, 8> way;          ///< part of the light's way through a slice
 };
 
-/// Reads what light has come through before it comes to voxels, as square roots in 1 / kDepthSteps.
+/// Reads the extinction on the way to voxels, as square roots in 1 / kDepthSteps.
 /// @param plane   node 0
 /// @param out     voxel (0, 0) of the slice
-/// @param stride  from a voxel of `out` to the next along u and v
+/// @param stride  between voxels of `out` along u and v
 void readBetweenNodes(const VoxelsBetweenNodes& rows, const VoxelsBetweenNodes& columns,
                       const float* plane, std::size_t pitch, std::uint16_t* out, glm::ivec2 stride);
 

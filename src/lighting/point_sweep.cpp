@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: C. Zhang, R. Crawfis, Volumetric Shadows Using Splatting, 2002 (a buffer of light that
-// is carried from slice to slice), for a light among the slices, and P. Joseph, An Improved
-// Algorithm for Reprojecting Rays Through Pixel Images, 1982 (a way read once a slice, between
-// voxels).
+// Based on: C. Zhang, R. Crawfis, Volumetric Shadows Using Splatting, 2002 (a light buffer carried
+// from slice to slice), for a light among the slices, and P. Joseph, An Improved Algorithm for
+// Reprojecting Rays Through Pixel Images, 1982 (a ray read once per slice, between voxels).
 #include "lighting/point_sweep.h"
 
 #include <algorithm>
@@ -19,23 +18,23 @@
 namespace deltasplat {
 namespace {
 
-// Up to there the slice that the light is in reaches, or the voxel that it is in.
+// Half the thickness of the light's own slice or voxel.
 constexpr double kHalf = 0.5;
 
-// Nodes for a slope of 1 that a slice needs: at least as many as there are voxels.
+// Nodes for a slope of 1 at a slice: at least as many as voxels.
 double nodesAt(double distance) {
     double nodes = kLeastNodes;
     while (nodes < distance) nodes *= 2;
     return nodes;
 }
 
-// How far aside a voxel lies for a slice that light goes on. Who is where the light is lies ahead.
+// Sideways voxels per slice of the light's way. A voxel at the light counts as straight ahead.
 double slopeOf(double aside, double distance) {
     return distance > kHalf ? aside / distance : 0;
 }
 
-// Of nodes that lie on eight voxels from `first` on, those within [least, most].
-// @param first     how far aside the first voxel is from the light
+// Returns the nodes within [least, most] on eight voxels.
+// @param first     sideways distance of the first voxel from the light
 // @param distance  of the slice
 NodesOnBlock nodesOn(double first, double distance, double nodes, std::int64_t least,
                      std::int64_t most) {
@@ -46,7 +45,7 @@ NodesOnBlock nodesOn(double first, double distance, double nodes, std::int64_t l
     on.first = std::int64_t(std::clamp(lowest, double(least), double(most) + 1));
     const auto last = std::int64_t(std::clamp(highest, double(least) - 1, double(most)));
     for (std::int64_t node = on.first; node <= last; ++node, ++on.count) {
-        // From the voxel before the block on.
+        // Counted from the voxel before the block.
         const double place = std::clamp(double(node) * perNode - first + 1, 0.0, 9.0);
         const double before = std::min(std::floor(place), 8.0);
         on.before[on.count] = std::uint32_t(before);
@@ -55,18 +54,18 @@ NodesOnBlock nodesOn(double first, double distance, double nodes, std::int64_t l
     return on;
 }
 
-// As many floats as a plane may have before what is not read of it is left out.
+// Larger planes, in floats, are swept in parts.
 constexpr double kLargePlane = 1 << 22;
 
-// What a block reads from or adds to.
+// Nodes that a block reads or writes.
 struct NodeReach : PlaneBox {
     std::size_t group;
     std::size_t place;
 };
 
-// Nodes that voxels of a block and those beside them lie between, and one more.
-// @param aside  of its first voxel
-// @param from   distance of its first slice, of which the light may be in the next
+// Nodes between which a block's voxels and their neighbours lie, and one more.
+// @param aside  sideways distance of the first voxel
+// @param from   distance of the first slice; the light may be in the next one
 PlaneBox nodesOfBlock(const glm::dvec2& aside, double from, double nodes, const PlaneBox& all) {
     PlaneBox box = all;
     const double nearest = std::max(from, kHalf);
@@ -88,14 +87,14 @@ PlaneBox nodesOfBlock(const glm::dvec2& aside, double from, double nodes, const 
 
 }  // namespace
 
-// Rows and columns from the light's own on, at the slice in hand.
+// Rows and columns relative to the light, at the current slice.
 struct PointSweep::Strip {
     double nodes;
     std::int64_t firstRow;
     std::int64_t lastRow;
     std::int64_t firstColumn;
     std::int64_t lastColumn;
-    std::uint16_t* depths;     // none: nothing is swept, as the plane's size alone is wanted
+    std::uint16_t* depths;     // null: only the plane's size is computed
     std::vector<float> plane;  // [lastRow - firstRow + 1][columns()]; empty without depths
 
     std::size_t columns() const { return std::size_t(lastColumn - firstColumn + 1); }
@@ -104,7 +103,7 @@ struct PointSweep::Strip {
     Strip partOf(const PlaneBox& box) const;
 };
 
-// What is between two nodes is mixed of them, as it was.
+// New nodes are means of their neighbours, as interpolation between them was before.
 void PointSweep::Strip::doubleNodes() {
     nodes *= 2;
     const std::size_t oldColumns = columns();
@@ -128,7 +127,7 @@ void PointSweep::Strip::doubleNodes() {
     }
 }
 
-// Before there is a plane, light has come through nothing.
+// Without a plane, the extinction so far is 0.
 PointSweep::Strip PointSweep::Strip::partOf(const PlaneBox& box) const {
     Strip part{nodes, box.least.x, box.most.x, box.least.y, box.most.y, depths, {}};
     if (!depths) return part;
@@ -152,18 +151,18 @@ PointSweep::PointSweep(const LitBlocks::Along& blocks, const PointPlace& light, 
     if (!ahead_.groups.empty()) findRows();
 }
 
-// Along the way of the light, from it to the middle of a slice.
+// Along the light's way, from the light to the middle of a slice.
 double PointSweep::distanceOf(int slice) const {
     return forward_ ? slice - light_.place.x : light_.place.x - slice;
 }
 
-// Which blocks light meets, or is to be known in.
+// Finds the blocks that light meets or that need light.
 void PointSweep::findGroups() {
     for (std::size_t n = 0; n < blocks_.groups.size(); ++n) {
         const auto& group = blocks_.groups[forward_ ? n : blocks_.groups.size() - 1 - n];
         const double farthest = distanceOf(group.firstSlice + (forward_ ? 7 : 0));
         if (farthest <= -kHalf) continue;
-        // Voxels are seen from one beside them.
+        // Neighbours of voxels count, too.
         const double aside = std::max(farthest, kHalf) + 1;
         const auto isAhead = [&](double first, double light) {
             return first - light <= aside && first + 7 - light >= -aside;
@@ -179,7 +178,7 @@ void PointSweep::findGroups() {
     }
 }
 
-// Which part of the plane any voxel reads from.
+// Finds the part of the plane that voxels read.
 void PointSweep::findRows() {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     glm::dvec2 least(kInfinity);
@@ -218,7 +217,7 @@ void PointSweep::run(std::int64_t first, std::int64_t last, std::uint16_t* depth
     sweep(first, last, depths);
 }
 
-// Returns how many nodes planes have at a time, at most. Sweeps nothing without depths.
+// Returns the largest number of nodes at a time; without depths, sweeps nothing.
 double PointSweep::sweep(std::int64_t first, std::int64_t last, std::uint16_t* depths) const {
     const Strip strip{
         nodes_, firstRow_ + first, firstRow_ + last, firstColumn_, lastColumn_, depths, {}};
@@ -233,7 +232,7 @@ double PointSweep::sweepBlocks(const Blocks& blocks, Strip& strip) const {
     double most = strip.box().count();
     const auto doubleNodes = [&] {
         strip.doubleNodes();
-        // Those before are a quarter.
+        // The old plane is a quarter of the new one.
         most = std::max(most, 1.25 * strip.box().count());
     };
     for (std::size_t n = 0; n < blocks.groups.size(); ++n) {
@@ -257,8 +256,8 @@ double PointSweep::sweepBlocks(const Blocks& blocks, Strip& strip) const {
     return most;
 }
 
-// Sweeps blocks from a group on by parts of the plane, where these are smaller than it is; returns
-// how many nodes planes of one have, at most.
+// Sweeps blocks from a group on in separate parts of the plane, if these are small enough; returns
+// the largest number of nodes of a part at a time.
 std::optional<double> PointSweep::sweepApart(const Blocks& blocks, std::size_t group,
                                              const Strip& strip) const {
     constexpr double kSmallPart = 1 << 10;
@@ -294,11 +293,11 @@ std::optional<double> PointSweep::sweepApart(const Blocks& blocks, std::size_t g
     return most;
 }
 
-// All voxels of the slice are read before any are added.
+// All voxels of the slice read before any voxel adds.
 void PointSweep::sweepSlice(const Blocks& blocks, const LitBlocks::Along::Group& group, int slice,
                             Strip& strip) const {
     const double distance = distanceOf(slice);
-    // Of the slice that the light is in, what lies before it.
+    // In the light's own slice, only the part ahead of the light counts.
     const double share = std::min(distance + kHalf, 1.0);
     if (share <= 0) return;
     const glm::ivec3 stride = toSliceOrder(kLeafStride, blocks_.sliceAxis);
@@ -329,8 +328,7 @@ void PointSweep::sweepSlice(const Blocks& blocks, const LitBlocks::Along::Group&
     }
 }
 
-// Those of its voxels that lie farthest from the light along this axis. Of axes that are equal the
-// first counts.
+// Reads the voxels farthest from the light along this axis; of equal axes, the first counts.
 void PointSweep::read(const LitBlocks::Along::Place& block, double distance, const Strip& strip,
                       std::uint16_t* out) const {
     const glm::ivec3 order = sliceOrder(blocks_.sliceAxis);

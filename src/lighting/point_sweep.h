@@ -13,38 +13,33 @@
 
 namespace deltasplat {
 
-/// Where a point light stands among voxels, as they lie along a slice axis.
+/// Where a point light stands among voxels in the order of a slice axis.
 struct PointPlace {
     glm::dvec3 place;  ///< (slice, u, v), each at most 1e12
-    /// What a step along slice, u and v is in the world, in units of what light meets
-    /// (MetClasses).
+    /// World length of a step along slice, u and v, in units of MetClasses.
     glm::dmat3 steps;
 };
 
-/// What the light of a point comes through on its way to those voxels that lie farthest from it
-/// along one axis, one way: a sixth of space. Slices are swept from the light on, as LightSweep
-/// does, on a plane that grows with the distance: a node of it stands for a way from the light, and
-/// adds up what this way meets. From slices to those twice as far the nodes are doubled both ways,
-/// so that voxels never lie closer than they do. What is between two nodes is so far mixed of them
-/// anyway, so that this blurs nothing. Where planes are or would get large, what no voxel behind
-/// reads is left out, and what lies far apart is swept by itself from there on.
+/// Extinction on the ways from a point to the voxels that lie farthest from it along one axis in
+/// one direction: a sixth of space. Like LightSweep, sweeps slices from the light on, but the plane
+/// grows with the distance. A node stands for a way from the light and sums the extinction along
+/// it. At twice the distance, the number of nodes doubles both ways, so that voxels never lie
+/// closer than nodes; this blurs nothing, because values between nodes are interpolated anyway.
+/// Large planes drop nodes that no voxel behind reads, and separate parts are swept separately.
 class PointSweep {
   public:
     /// @param blocks   along the slice axis; must outlive this
-    /// @param forward  to voxels of larger slices than the light's, and of its own
-    /// @param met      what light meets in a slice on its shortest way
+    /// @param forward  towards larger slices, including the light's own slice
+    /// @param met      for the shortest way through a slice
     PointSweep(const LitBlocks::Along& blocks, const PointPlace& light, bool forward,
                const MetClasses& met);
 
-    /// Rows that the plane has, as far as light is to be known there; 0 if no voxel is. It can be
-    /// cut into strips of rows that are swept by themselves, without changing anything.
+    /// Rows of the plane; 0 if no voxel needs light. Strips of rows can be swept separately.
     std::int64_t rows() const { return lastRow_ - firstRow_; }
-    /// Bytes that sweeping such a strip takes.
     double bytes(std::int64_t first, std::int64_t last) const;
-    /// Sweeps a strip. Voxels that it does not reach are left to others.
+    /// Sweeps a strip; writes only the voxels that it reaches.
     /// @param first,last  rows [first, last) of [0, rows())
-    /// @param depths      of blocks, `[x][y][z]` each: square roots of extinction, in 1 /
-    ///                    kDepthSteps
+    /// @param depths      per block, `[x][y][z]`: square roots of extinction, in 1 / kDepthSteps
     void run(std::int64_t first, std::int64_t last, std::uint16_t* depths) const;
 
   private:
@@ -72,7 +67,7 @@ class PointSweep {
     bool forward_;
     MetClasses met_;
     Blocks ahead_;
-    // Nodes where slices begin: rows and columns from the light's own, `nodes_` for a slope of 1.
+    // Nodes of the first plane: rows and columns relative to the light, `nodes_` for a slope of 1.
     double nodes_ = 1;
     std::int64_t firstRow_ = 0;
     std::int64_t lastRow_ = 0;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: J. F. Blinn, Models of Light Reflection for Computer Synthesized Pictures, 1977.
-// The lighting of voxels, compiled once for each SIMD level. Every voxel is reckoned by itself, in
-// one order of additions, so that every level gives the same bits.
+// Compiled once per SIMD level. The order of additions is fixed, so all levels give the same bits.
 #include "lighting/reflection_kernels.h"
 
 #include "base/simd_targets.h"
@@ -9,7 +8,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lighting/reflection_kernels.cpp"
 #include "hwy/foreach_target.h"
-// After foreach_target.h, as Highway asks.
+// Highway requires this after foreach_target.h.
 #include "base/opacity_steps-inl.h"
 #include "hwy/highway.h"
 #include "lighting/lit_vectors-inl.h"
@@ -34,7 +33,7 @@ HWY_INLINE Vector3 gradientsOf(const OwnLook* looks) {
             hn::ConvertTo(tag, hn::ShiftRight<16>(hn::ShiftLeft<16>(high)))};
 }
 
-// Of the two sides of a gradient the one that faces the camera.
+// Flips gradients that point away from the camera.
 HWY_INLINE Vector3 turnedTo(const Vector3& toCamera, const Vector3& gradient) {
     const auto isTurned = hn::Lt(dot(gradient, toCamera), hn::Zero(FullTag()));
     return {hn::IfThenElse(isTurned, hn::Neg(gradient.x), gradient.x),
@@ -42,7 +41,6 @@ HWY_INLINE Vector3 turnedTo(const Vector3& toCamera, const Vector3& gradient) {
             hn::IfThenElse(isTurned, hn::Neg(gradient.z), gradient.z)};
 }
 
-// The numbers of OwnLook::height of a vector of voxels.
 HWY_INLINE Vector heightsOf(const OwnLook* looks) {
     const FullTag tag;
     const hn::RebindToSigned<FullTag> whole;
@@ -51,15 +49,15 @@ HWY_INLINE Vector heightsOf(const OwnLook* looks) {
     return hn::ConvertTo(tag, hn::And(hn::ShiftRight<16>(high), hn::Set(whole, 0xFF)));
 }
 
-// How opaque voxels are of which a surface is seen. Down to depth d, in a voxel's sizes, a share of
-// 1 / (1 + e^(k d)) comes through on whatever way, so a voxel lets through the ratio of what leaves
-// its step to what comes in. So a line of sight along a surface becomes as opaque in many steps as
-// in one, and on its way out no more.
+// Opacities of voxels at a surface. Down to depth d, in voxel sizes, a share of 1 / (1 + e^(k d))
+// comes through on any way. A voxel lets through the ratio of the shares behind and before its
+// step, so a line of sight along a surface becomes as opaque in many steps as in one, and on its
+// way out no more.
 HWY_INLINE Vector opacitiesOf(const CutVoxels& cut, const Vector3& normal, const Vector3& toCamera,
                               Vector height) {
-    // A voxel is there by as much as a box of its size is, in deviation.
+    // Same deviation as a box of the voxel's size.
     constexpr double kSteepness = 6.3;
-    // Slices that are blurred cover more, by so much for a variance of depths.
+    // Blurred slices cover more, by this much per variance of depths.
     constexpr double kPerVariance = 0.75;
     constexpr double kLog2OfE = 1.44269504;
     const auto alongSlice = dot(normal, vectorOf(cut.steps[0]));

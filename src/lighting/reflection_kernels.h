@@ -12,63 +12,59 @@
 
 namespace deltasplat {
 
-/// The largest component of a gradient's direction, as a look states it.
+/// Largest component of a gradient in a look.
 inline constexpr float kMostSlope = 32767;
 
-/// A light that comes from one direction everywhere, or from the camera.
+/// A light from one direction everywhere, or from the camera.
 struct Ray {
-    bool fromCamera;    ///< then the vectors are those to the camera
-    glm::vec3 toLight;  ///< of length 1
-    glm::vec3 half;  ///< half-way to the camera, of length 1; only where all see it from one side
-    glm::vec3 diffuse;   ///< colour times strength times the share that is reflected evenly
-    glm::vec3 specular;  ///< that is mirrored, likewise, in units of VoxelUnits for an alpha of 1
+    bool fromCamera;     ///< if true, all vectors point to the camera
+    glm::vec3 toLight;   ///< of length 1
+    glm::vec3 half;      ///< half-way to the camera, of length 1; for parallel lines of sight
+    glm::vec3 diffuse;   ///< colour * strength * diffuse share
+    glm::vec3 specular;  ///< likewise for highlights, in VoxelUnits for an alpha of 1
 
     bool operator==(const Ray&) const = default;
 };
 
-/// Heights (OwnLook) above a surface are in sizes of a voxel, which is the root of the sum of
-/// squares of what its edges go along the normal: from kMostHeight on nothing of a voxel is seen,
-/// and 0 is kMostDepth below.
+/// Heights (OwnLook) above a surface are in voxel sizes along the normal (root of the sum of
+/// squared edges along it). From kMostHeight on a voxel is invisible; height 0 is kMostDepth below.
 inline constexpr float kMostHeight = 1.5;
 inline constexpr float kMostDepth = 3;
-/// Numbers of OwnLook::height that a size takes.
+/// Steps of OwnLook::height per voxel size.
 inline constexpr float kHeightSteps = OwnLook::kAll / (kMostHeight + kMostDepth);
 
-/// What tells how much is seen of voxels by or below a surface.
+/// Geometry for the opacity of voxels at or below a surface.
 struct CutVoxels {
-    /// In the world, in any unit: from a voxel to the next along slice, u and v.
+    /// From one voxel to the next along slice, u and v, in the world, in any unit.
     std::array<glm::vec3, 3> steps;
-    glm::vec3 perSlice;  ///< of what the product with a way in that unit is how many slices it goes
-    glm::vec3 blur;      ///< LitScene's
+    glm::vec3 perSlice;  ///< dot product with a way in that unit: number of slices
+    glm::vec3 blur;      ///< LitScene::blur
 
     bool operator==(const CutVoxels&) const = default;
 };
 
-/// What voxels reflect (Shading).
 struct Reflection {
     float ambient;
     float shininess;
     bool hasSpecular;
     std::vector<Ray> rays;
-    /// Of what is solid, which gradients point out of; otherwise either side of one may face the
-    /// camera.
+    /// Set if gradients point out of a solid; otherwise both sides of a gradient can be seen.
     std::optional<CutVoxels> cut;
     bool fromEye;        ///< each voxel has its own way to the camera
-    glm::vec3 toCamera;  ///< of length 1, unless it has
+    glm::vec3 toCamera;  ///< of length 1; unused if `fromEye`
 
     bool operator==(const Reflection&) const = default;
 };
 
-/// What is lit.
 struct WordToLight {
     const glm::vec4* colors;       ///< of classes, premultiplied
     const std::uint16_t* classes;  ///< [64]
-    /// [64]: gradients in the world, of length kMostSlope times the share that is shaded
+    /// [64]: gradients in the world, of length kMostSlope times the shaded share
     const OwnLook* looks;
     const WaysToEye* ways;  ///< null unless `fromEye`
 };
 
-/// Returns the premultiplied colours that voxels reflect. The same bits at every SIMD level.
+/// Returns the premultiplied reflected colours. The same bits at every SIMD level.
 void reflect(const Reflection& reflection, const WordToLight& word, WordUnits& units);
 
 }  // namespace deltasplat

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: L. G. Henyey, J. L. Greenstein, Diffuse Radiation in the Galaxy, 1941, and M.
-// Wrenninge, C. Kulla, V. Lundqvist, Oz: The Great and Volumetric, 2013, for octaves. The lighting
-// of voxels, compiled once for each SIMD level. Every voxel is reckoned by itself, in one order of
-// additions, so that every level gives the same bits.
+// Wrenninge, C. Kulla, V. Lundqvist, Oz: The Great and Volumetric, 2013, for octaves. Compiled once
+// per SIMD level. The order of additions is fixed, so all levels give the same bits.
 #include "lighting/scatter_kernels.h"
 
 #include "base/portable_math.h"
@@ -12,7 +11,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lighting/scatter_kernels.cpp"
 #include "hwy/foreach_target.h"
-// After foreach_target.h, as Highway asks.
+// Highway requires this after foreach_target.h.
 #include "hwy/highway.h"
 #include "lighting/lit_vectors-inl.h"
 
@@ -20,7 +19,7 @@ HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The share of light that is left, of the octave that is dimmed least.
+// Share of light left in the least dimmed octave.
 HWY_INLINE Vector leftOf(const std::uint16_t* depths, double perStep) {
     const FullTag tag;
     const hn::RebindToSigned<FullTag> whole;
@@ -40,8 +39,7 @@ HWY_INLINE Vector phaseAt(const ScatterPhase& phase, Vector cosine) {
     return sum;
 }
 
-// The share of light that is left in voxels where the camera sees them, of the octave that is
-// dimmed least.
+// Share of light left at the visible depth of voxels, in the least dimmed octave.
 HWY_INLINE Vector ownLeft(const Vector (&own)[4], Vector cosine, int octaves) {
     const auto end = hn::IfThenElse(hn::Lt(cosine, constant(0)), own[0], own[2]);
     auto left = hn::Add(own[1], hn::Mul(hn::Abs(cosine), hn::Sub(end, own[1])));
@@ -49,7 +47,7 @@ HWY_INLINE Vector ownLeft(const Vector (&own)[4], Vector cosine, int octaves) {
     return left;
 }
 
-// What voxels send on each time of the light that they meet: colour times albedo, no more than all.
+// Share of the incoming light that voxels send on: colour times albedo, at most 1.
 HWY_INLINE Vector3 sentOnBy(const ScatterWord& word, int n) {
     Vector share[4];
     loadColors(word.sentOn, word.classes + n, share);
@@ -61,8 +59,8 @@ HWY_INLINE Vector3 sentOnBy(const ScatterWord& word, int n) {
     return {channel(0), channel(1), channel(2)};
 }
 
-// The sum over octaves of share(octave) left 2^octave sentOn^octave, by Horner's rule: from the
-// last octave, which is dimmed least, each has twice the extinction of the next.
+// The sum over octaves of share(octave) left 2^octave sentOn^octave, by Horner's rule from the
+// last, least dimmed octave. Each octave has twice the extinction of the next.
 template <typename Share>
 HWY_INLINE Vector3 sumOfOctaves(int octaves, Vector left, const Vector3& sentOn,
                                 const Share& share) {
@@ -74,11 +72,11 @@ HWY_INLINE Vector3 sumOfOctaves(int octaves, Vector left, const Vector3& sentOn,
     return all;
 }
 
-// How a vector of voxels is lit from a point.
+// Light from a point on a vector of voxels.
 struct LitFromPoint {
     Vector share;    // of the light's colour
-    Vector cosine;   // between the way of light and that to the camera
-    Vector oneSide;  // the share of it that comes from one side, not from all
+    Vector cosine;   // of the deflection
+    Vector oneSide;  // share of light from one side, not from all sides
 };
 
 HWY_INLINE LitFromPoint litFrom(const WaysToEye& toLight, int n, const Vector3& toCamera) {
@@ -90,7 +88,6 @@ HWY_INLINE LitFromPoint litFrom(const WaysToEye& toLight, int n, const Vector3& 
             hn::Min(length, constant(1))};
 }
 
-// What voxels scatter that a point lights.
 HWY_INLINE Vector3 scatteredFromPoint(const ScatterSums& sums, const ScatterRay& ray,
                                       const LitFromPoint& lit, const Vector (&own)[4],
                                       const Vector3& sentOn, Vector left) {
@@ -179,7 +176,7 @@ double ScatterPhase::at(double cosine) const {
     return sum;
 }
 
-// Each lobe is largest straight ahead, or straight back, and smallest the other way.
+// Each lobe is largest straight ahead or straight back, and smallest the other way.
 double ScatterPhase::largest() const {
     double sum = 0;
     for (const Lobe& lobe : lobes) sum += lobe.at(lobe.b > 0 ? 1 : -1);

@@ -15,9 +15,8 @@
 
 namespace deltasplat {
 
-/// What one octave of fog scatters towards the camera, as a function of the cosine c of the angle
-/// between the way of light before and after: the sum over lobes of k / (a - b c)^1.5, 1 being what
-/// a white surface does that faces a light (Scattering).
+/// Scattering of one octave of fog towards the camera, relative to a white surface that faces the
+/// light: the sum over lobes of k / (a - b c)^1.5, with c the cosine of the angle of deflection.
 struct ScatterPhase {
     struct Lobe {
         float k, a, b;
@@ -30,54 +29,49 @@ struct ScatterPhase {
     std::array<Lobe, 2> lobes;
 
     double at(double cosine) const;
-    /// The most that it is anywhere, and the least.
     double largest() const;
     double smallest() const;
 };
 
-/// Returns the share of light that is left in a voxel where the camera sees it, on average: lit
-/// from the front, from a side, from behind; the last is not used.
-/// @param depth  extinction on the way through it, >= 0, may be infinite
+/// Returns the average share of light left at the visible depth of a voxel that is lit from the
+/// front, from a side and from behind; the last component is unused.
+/// @param depth  extinction through the voxel, >= 0, may be infinite
 glm::vec4 ownLight(double depth);
 
-/// Returns the phase of each octave, [octaves + 1], its strength included.
+/// Returns the phase of each octave, [octaves + 1], including its strength.
 std::vector<ScatterPhase> phasesOf(const Scattering& scattering);
 
-/// A light, as the kernel takes it.
 struct ScatterRay {
-    glm::vec3 way;  ///< that light travels, of length 1
+    glm::vec3 way;  ///< of the light, of length 1
     glm::vec3 color;
-    float cosine;  ///< between its way and that to the camera, where all see it from one side
-    /// [octaves + 1]: colour times what is scattered towards the camera, where all see it from one
-    /// side.
+    float cosine;  ///< of the deflection; for parallel lines of sight
+    /// [octaves + 1]: colour times scattering towards the camera; for parallel lines of sight.
     std::vector<glm::vec3> towardsCamera;
-    /// It shines from a point, towards each voxel another way: the others are of no effect, but for
-    /// its colour, which it has where ways to it are of length 1 or less.
+    /// A point light has only a colour, valid at distances (WaysToEye) of 1 or less.
     bool isPoint = false;
 };
 
-/// What voxels scatter (Scattering).
 struct ScatterSums {
     glm::vec3 ambient;
     std::vector<ScatterPhase> phases;  ///< [octaves + 1]
     std::vector<ScatterRay> rays;
-    glm::vec3 toCamera;  ///< of length 1, where all see it from one side
+    glm::vec3 toCamera;  ///< of length 1; for parallel lines of sight
 };
 
-/// What is lit.
+/// Voxels of a word to be lit.
 struct ScatterWord {
     const glm::vec4* colors;  ///< of classes, premultiplied
     const glm::vec4* own;     ///< of classes: ownLight()
-    const glm::vec4* sentOn;  ///< of classes: colour times albedo; of use to octaves alone
-    /// [3][64]: what each voxel's is multiplied by; null if by nothing.
+    const glm::vec4* sentOn;  ///< of classes: colour times albedo; only for octaves
+    /// [3][64]: factors of the voxels' `sentOn`; null: all 1.
     const WordFactors* factors;
     const std::uint16_t* classes;  ///< [64]
-    const std::uint16_t* depths;   ///< [rays][64]: as LightDepths has them
-    const WaysToEye* ways;         ///< null if all see it from one side
-    const WaysToEye* toLights;     ///< to those that shine from a point, one after the other
+    const std::uint16_t* depths;   ///< [rays][64]: see LightDepths
+    const WaysToEye* ways;         ///< null for parallel lines of sight
+    const WaysToEye* toLights;     ///< to the point lights, one after the other
 };
 
-/// Returns the premultiplied colours that voxels scatter. The same bits at every SIMD level.
+/// Returns the premultiplied scattered colours. The same bits at every SIMD level.
 void scatter(const ScatterSums& sums, const ScatterWord& word, WordUnits& units);
 
 }  // namespace deltasplat

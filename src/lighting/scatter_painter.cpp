@@ -21,7 +21,6 @@
 namespace deltasplat {
 namespace {
 
-// Lights that shine at all.
 std::vector<Light> shiningOf(const Scattering& scattering) {
     std::vector<Light> shining;
     for (const Light& light : scattering.lights) {
@@ -31,23 +30,22 @@ std::vector<Light> shiningOf(const Scattering& scattering) {
     return shining;
 }
 
-// A light, as it shines on voxels.
+// A light and its strength at voxels.
 struct Shine {
-    Light light;            // of a point light the strength that it has at `unitWorld` from it
-    double unitWorld = 1;   // nearer than that nothing is lit, or nothing more brightly
+    Light light;            // a point light has the strength of distance `unitWorld`
+    double unitWorld = 1;   // least distance that matters for strength
     double leastShare = 1;  // of the strength, at any voxel
 
     bool isPoint() const { return light.positionWorld.has_value(); }
 };
 
 Shine shineOf(const Light& light, const LitBlocks::Reach& reach, const Volume& volume) {
-    // 1 / R^2 is the mean of 1 / r^2 over a ball of a voxel's volume, of side 1: R is sqrt(1/3) of
-    // its radius.
+    // Radius of a ball of volume 1 times sqrt(1/3): there 1 / r^2 has its mean over the ball.
     constexpr double kOwnVoxel = 0.35816;
     constexpr double kMost = 1e30;
     Shine shine{light};
     if (!light.positionWorld) return shine;
-    const double size = std::abs(glm::determinant(glm::dmat3(volume.worldFromIndex)));
+    const double size = std::abs(glm::determinant(glm::dmat3(volume.worldFromIndex())));
     const double voxel = portable::pow(size, 1.0 / 3);
     const double least = std::max(light.radiusWorld, kOwnVoxel * voxel);
     shine.unitWorld = std::max(least, reach.nearest);
@@ -58,7 +56,7 @@ Shine shineOf(const Light& light, const LitBlocks::Reach& reach, const Volume& v
     return shine;
 }
 
-// What fog scatters towards a camera. Where its voxels lie says all: looks are of no use.
+// Fog's light towards a camera. It depends only on the places of voxels, not on looks.
 class ScatteredLight : public LookLight {
   public:
     ScatteredLight(const Scattering& scattering, const std::vector<Shine>& shines,
@@ -119,7 +117,7 @@ class ScatteredLight : public LookLight {
   private:
     static constexpr std::size_t kMostAtOnce = 64;
 
-    // Room for some things, on the stack if they are few.
+    // Storage for elements, on the stack if they are few.
     template <typename T, std::size_t kFew>
     class FewOrMany {
       public:
@@ -133,7 +131,7 @@ class ScatteredLight : public LookLight {
         std::vector<T> many_;
     };
 
-    // Of where light goes and where it goes on to.
+    // Of the deflection.
     static double cosineOf(const Light& light, const Camera& camera) {
         return glm::dot(unitVectorOf(light.direction), -camera.direction);
     }
@@ -150,7 +148,7 @@ class ScatteredLight : public LookLight {
         return ray;
     }
 
-    // What lights show at least, for what they show at most.
+    // Ratio of the least to the largest light at any voxel.
     static double dimmestOf(const Scattering& scattering, const std::vector<Shine>& shines,
                             const Camera& camera) {
         const bool isAnyPoint = std::any_of(shines.begin(), shines.end(),
@@ -172,15 +170,14 @@ class ScatteredLight : public LookLight {
         return dimmest;
     }
 
-    // What those send on that send on most, each time.
+    // Upper bound of the share sent on per octave.
     static glm::dvec3 sentOnAtMost(const Scattering& scattering, const glm::dvec3* factor,
                                    const ClassTable& classes) {
         const glm::dvec3 share = scattering.albedo * deltasplat::brightestOf(classes);
         return glm::min(factor ? share * *factor : share, glm::dvec3(1));
     }
 
-    // The most light of octaves 0 to `octaves` that any voxel turns to the camera, before it has
-    // its own colour.
+    // Upper bound of the light of octaves 0..octaves to the camera, without the voxel's colour.
     static glm::dvec3 turnedAtMost(const Scattering& scattering, const std::vector<Shine>& shines,
                                    const glm::dvec3& sentOn, const Camera& camera, int octaves) {
         const bool isParallel = camera.projection == Projection::kOrtho;
@@ -199,7 +196,6 @@ class ScatteredLight : public LookLight {
         return most;
     }
 
-    // The most that any voxel scatters.
     static glm::dvec3 brightestOf(const Scattering& scattering, const std::vector<Shine>& shines,
                                   const glm::dvec3* factor, const ClassTable& classes,
                                   const Camera& camera) {
@@ -208,7 +204,7 @@ class ScatteredLight : public LookLight {
                             scattering.octaves);
     }
 
-    // What is dark may have hardly more than the first octave of what is brightest.
+    // Dark voxels may send on almost nothing, and so have only the first octave.
     static double leastOfOctaves(const Scattering& scattering, const std::vector<Shine>& shines,
                                  const glm::dvec3* factor, const ClassTable& classes,
                                  const Camera& camera) {
@@ -221,7 +217,7 @@ class ScatteredLight : public LookLight {
         return least;
     }
 
-    // Reads those of a word's voxels, [lights][u][v]. Of what cannot be seen they may be anything.
+    // Reads the depths of a word's voxels, [lights][u][v]; undefined for invisible voxels.
     void readDepths(const WordPlace& place, std::uint16_t* depths) const {
         const glm::ivec3 block(floorDiv(place.x, 8), floorDiv(place.y, 8), floorDiv(place.z, 8));
         const std::int64_t number = depths_.blocks().find(fromSliceOrder(block, sliceAxis_));
@@ -244,10 +240,10 @@ class ScatteredLight : public LookLight {
     bool hasFactors_;
     std::vector<glm::vec4> colors_;  // [classes]: premultiplied
     std::vector<glm::vec4> own_;     // [classes]: ownLight()
-    std::vector<glm::vec4> sentOn_;  // [classes]: as ScatterWord has it, times the largest factor
+    std::vector<glm::vec4> sentOn_;  // [classes]: ScatterWord::sentOn times the largest factor
     ScatterSums sums_;
     std::optional<EyeOfVoxels> eye_;
-    std::vector<EyeOfVoxels> points_;  // lights that shine from a point
+    std::vector<EyeOfVoxels> points_;  // the point lights
 };
 
 class ScatterPainter : public VoxelPainter {
@@ -282,8 +278,8 @@ class ScatterPainter : public VoxelPainter {
     Scattering scattering_;
     ClassTable classes_;
     LightDepths depths_;
-    std::vector<Shine> shines_;                // as `depths_` has them
-    std::optional<glm::dvec3> largestFactor_;  // empty: voxels have the colours of their classes
+    std::vector<Shine> shines_;                // in the order of `depths_`
+    std::optional<glm::dvec3> largestFactor_;  // empty: voxels have class colours
 };
 
 }  // namespace

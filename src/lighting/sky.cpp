@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: A. J. Preetham, Peter Shirley and Brian Smits, "A Practical Analytic Model for
-// Daylight", 1999, appendix 2 (coefficients of Perez' function, and what the zenith is like), and
-// Stanislav Darula, Richard Kittler and Christian Gueymard, "Reference luminous solar constant and
-// solar luminance for illuminance calculations", 2005 (133 klx).
-// Daylight", 1999, appendix 1, "Transmittance expressions for atmospheric constituents", after
-// Muhammad Iqbal, "An Introduction to Solar Radiation", 1983 (Rayleigh, Angstrom's aerosol,
-// Leckner's ozone, Kasten's air mass) and its table 2 (the sun's spectrum, ozone). Water vapour and
-// mixed gases, which absorb from 690 nm on, are left out. The observer is that of Chris Wyman,
+// Daylight", 1999: appendix 2 (coefficients of Perez' function, the zenith) and appendix 1,
+// "Transmittance expressions for atmospheric constituents", after Muhammad Iqbal, "An Introduction
+// to Solar Radiation", 1983 (Rayleigh, Angstrom's aerosol, Leckner's ozone, Kasten's air mass),
+// with table 2 (the sun's spectrum, ozone), without water vapour and mixed gases, which absorb from
+// 690 nm on; Stanislav Darula, Richard Kittler and Christian Gueymard, "Reference luminous solar
+// constant and solar luminance for illuminance calculations", 2005 (133 klx); and Chris Wyman,
 // Peter-Pike Sloan and Peter Shirley, "Simple Analytic Approximations to the CIE XYZ Color Matching
-// Functions", 2013 (multi-lobe).
+// Functions", 2013 (the observer, multi-lobe).
 #include "lighting/sky.h"
 
 #include <algorithm>
@@ -39,7 +38,6 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kKiloluxOfSun = 133;
 constexpr int kHeight = 256;
 
-// Where the sun stands.
 struct Place {
     glm::dvec3 up;          // of length 1
     glm::dvec3 horizontal;  // the sun's side of the horizon, of length 1
@@ -68,7 +66,7 @@ Place placeOf(const Sky& sky) {
     const double height = glm::dot(sun, up);
     glm::dvec3 level = sun - height * up;
     const double distance = glm::length(level);
-    // Of a sun in the zenith or close to it, any side is the sun's.
+    // If the sun is at or near the zenith, any side is the sun's.
     if (distance < 1e-6)
         level = glm::cross(up, std::abs(up.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0));
     return {up, glm::normalize(level), height, portable::atan2(distance, height)};
@@ -79,7 +77,7 @@ bool isUp(const Place& place) {
     return place.height > -1e-9;
 }
 
-// How something changes over the sky, relative to the zenith.
+// A quantity over the sky, relative to the zenith.
 struct Perez {
     double a, b, c, d, e;
 
@@ -90,14 +88,14 @@ struct Perez {
     }
 };
 
-// Chromaticities x and y, and the luminance Y.
+// Models of the chromaticities x and y and the luminance Y.
 struct SkyModel {
     std::array<Perez, 3> perez;
-    std::array<double, 3> zenith;  // divided by what perez is there
+    std::array<double, 3> zenith;  // divided by perez at the zenith
 };
 
-// The columns are the coefficients of the sun's zenith angle cubed, squared, itself, and 1; the
-// rows those of turbidity squared, itself, and 1.
+// Columns: coefficients of the cube, square, first and zeroth power of the sun's zenith angle.
+// Rows: of the square, first and zeroth power of turbidity.
 double zenithChromaticity(const double (&rows)[3][4], double angle, double turbidity) {
     double value = 0;
     for (const auto& row : rows) {
@@ -145,7 +143,6 @@ glm::dvec3 radianceOf(const SkyModel& model, double cosZenithAngle, double sunAn
     return colorUnderSun(relative / y * glm::dvec3(x, y, 1 - x - y));
 }
 
-// Fills the upper half.
 void paintSky(const Place& place, const Sky& sky, Environment& environment) {
     const SkyModel model = modelOf(place.zenithAngle, sky.turbidity);
     Camera all;
@@ -166,7 +163,7 @@ void paintSky(const Place& place, const Sky& sky, Environment& environment) {
     });
 }
 
-// What falls on the ground from the upper half, divided by pi.
+// Irradiance of the ground from the upper half, divided by pi.
 glm::dvec3 lightFromAbove(const Environment& environment) {
     const glm::ivec2 size = environment.sizePixels;
     glm::dvec3 sum(0);
@@ -176,8 +173,7 @@ glm::dvec3 lightFromAbove(const Environment& environment) {
             const float* rgb = &environment.rgb[3 * (std::size_t(y) * std::size_t(size.x) + x)];
             row += glm::dvec3(rgb[0], rgb[1], rgb[2]);
         }
-        // The integral of sin over cos dlatitude is sin^2 / 2, and the differences of that add up
-        // to 1 / 2.
+        // The integral of sin cos over latitude is sin^2 / 2; the differences of sin^2 add up to 1.
         const double below = portable::sin(kPi * (0.5 - double(y + 1) / size.y));
         const double above = portable::sin(kPi * (0.5 - double(y) / size.y));
         sum += (above * above - below * below) / size.x * row;
@@ -185,7 +181,6 @@ glm::dvec3 lightFromAbove(const Environment& environment) {
     return sum;
 }
 
-// Fills the lower half.
 void paintGround(const glm::dvec3& color, Environment& environment) {
     const std::size_t half = environment.rgb.size() / 2;
     for (std::size_t i = half; i < environment.rgb.size(); ++i) {
@@ -228,7 +223,7 @@ namespace {
 
 struct Wavelength {
     double sun;    // radiance, in any unit
-    double ozone;  // absorption by a centimetre
+    double ozone;  // absorption per centimetre
 };
 
 // From 380 to 750 nm.
@@ -243,7 +238,7 @@ constexpr std::array<Wavelength, 38> kSpectrum{
      {211.0, 0.036}, {207.3, 0.028}, {202.4, 0.023}, {198.7, 0.018}, {194.3, 0.014}, {190.7, 0.011},
      {186.3, 0.01},  {182.6, 0.009}}};
 
-// A bell curve that is steeper on one side.
+// A bell curve with different widths on its two sides.
 double lobe(double nanometres, double middle, double before, double behind) {
     const double away = (nanometres - middle) / (nanometres < middle ? before : behind);
     return portable::exp(-0.5 * away * away);
@@ -257,7 +252,7 @@ glm::dvec3 observerAt(double nanometres) {
         1.217 * lobe(nanometres, 437.0, 11.8, 36.0) + 0.681 * lobe(nanometres, 459.0, 26.0, 13.8)};
 }
 
-// Of the air above, straight up is 1.
+// Relative to the air straight above.
 double airMass(double zenithAngle) {
     const double degrees = zenithAngle * (180 / std::numbers::pi);
     return 1 / (portable::cos(zenithAngle) + 0.15 * portable::pow(93.885 - degrees, -1.253));
@@ -270,7 +265,7 @@ double depthOfAir(double micrometres, const Wavelength& wavelength, double turbi
            aerosol * portable::pow(micrometres, -1.3) + kOzoneCentimetres * wavelength.ozone;
 }
 
-// XYZ of what is left of the sun's light.
+// XYZ of the sunlight that comes through.
 glm::dvec3 sunXyz(double mass, double turbidity) {
     glm::dvec3 xyz(0);
     for (std::size_t i = 0; i < kSpectrum.size(); ++i) {
@@ -297,7 +292,7 @@ glm::dvec3 sunColor(double zenithAngle, double turbidity) {
     return colorUnderSun(sunXyz(airMass(zenithAngle), turbidity) / aboveAir().y);
 }
 
-// Functions that a module does, and nothing besides.
+// Implemented by the image module.
 Environment readEnvironment(const std::filesystem::path& file, const Listener& listener) {
     return imageModule().readEnvironment(file, listener);
 }

@@ -21,13 +21,13 @@ namespace deltasplat {
 
 namespace {
 
-// Looks are gradients in the world, of length kMostSlope where all is surface.
+// Looks are gradients in the world, of length kMostSlope on full surfaces.
 class ShadingPainter : public VoxelPainter {
   public:
     ShadingPainter(const Volume& volume, const Shading& shading)
         : shading_(shading),
-          scale_(
-              scaledValues(volume, 0.5 * volume.valueMin + 0.5 * volume.valueMax, shading.noise)),
+          scale_(scaledValues(volume, 0.5 * volume.valueMin() + 0.5 * volume.valueMax(),
+                              shading.noise)),
           worldFromGradient_(worldFromIndexGradient(volume)) {}
 
     bool needsColors() const override { return true; }
@@ -52,7 +52,7 @@ class ShadingPainter : public VoxelPainter {
   private:
     Shading shading_;
     GradientScale scale_;
-    glm::mat3 worldFromGradient_;  // of gradients per smallest voxel size
+    glm::mat3 worldFromGradient_;  // to gradients per smallest voxel size
 };
 
 }  // namespace
@@ -64,7 +64,7 @@ std::unique_ptr<const VoxelPainter> makeShadingPainter(const Volume& volume,
 
 namespace {
 
-// One colour from everywhere.
+// One colour from all sides.
 Shading unlit() {
     Shading shading;
     shading.ambient = 1;
@@ -74,7 +74,7 @@ Shading unlit() {
     return shading;
 }
 
-// Looks are directions out of what is inside, and heights of voxels above its surface.
+// Looks are directions out of the inside, and heights of voxels above the surface.
 class SurfacePainter : public VoxelPainter {
   public:
     SurfacePainter(const Volume& volume, const Surface& surface, const Shading& shading)
@@ -84,10 +84,10 @@ class SurfacePainter : public VoxelPainter {
         scale_.withValues = true;
         if (isLevelSet(volume)) {
             for (float& value : scale_.ofCode) value = -value;
-            // What is not active may be far inside as well.
+            // Inactive voxels may also be far inside.
             scale_.background.reset();
         } else if (scale_.background && *scale_.background >= 0) {
-            // Not all of what is not active can be shown: the surface ends where it begins.
+            // Inactive voxels cannot all be shown: the surface ends where they begin.
             scale_.background.reset();
         }
     }
@@ -102,7 +102,7 @@ class SurfacePainter : public VoxelPainter {
     void paint(const BlockPlace& place, const BlockField* field,
                std::span<std::uint16_t, 512> classes,
                std::span<OwnLook, 512> looks) const override {
-        glm::vec3 size(0);  // of a voxel, along x, y and z; each is along one of them
+        glm::vec3 size(0);  // of a voxel along x, y and z; each step is along one of them
         for (int i = 0; i < 3; ++i) size += glm::abs(glm::vec3(place.steps[i]));
         const auto& [gx, gy, gz] = field->gradients;
         for (std::size_t n = 0; n < looks.size(); ++n) {
@@ -126,8 +126,7 @@ class SurfacePainter : public VoxelPainter {
     }
 
   private:
-    // OwnLook::height of a voxel, if values change evenly.
-    // @param step  by how much, across a voxel
+    // OwnLook::height of a voxel if values change evenly, by `step` across a voxel.
     static int heightOf(float value, float step) {
         if (!(value == value)) return OwnLook::kAll;
         if (!(step > 0)) return value >= 0 ? 0 : OwnLook::kAll;
@@ -143,7 +142,7 @@ class SurfacePainter : public VoxelPainter {
 }  // namespace
 
 bool isLevelSet(const Volume& volume) {
-    return volume.gridClass == "level set" && !volume.fromLevelSet;
+    return volume.gridClass() == "level set" && !volume.fromLevelSet();
 }
 
 std::unique_ptr<const VoxelPainter> makeSurfacePainter(const Volume& volume, const Surface& surface,
@@ -153,7 +152,7 @@ std::unique_ptr<const VoxelPainter> makeSurfacePainter(const Volume& volume, con
 
 namespace {
 
-// The most that any voxel reflects.
+// Upper bound of the reflected light.
 glm::dvec3 brightestOf(const Shading& shading, const ClassTable& classes) {
     glm::dvec3 intensity(0);
     for (const Light& light : shading.lights) intensity += light.strength * light.color;
@@ -161,7 +160,6 @@ glm::dvec3 brightestOf(const Shading& shading, const ClassTable& classes) {
            shading.specular * intensity;
 }
 
-// The way to a light, of length 1.
 glm::dvec3 towards(const Light& light, const Camera& camera) {
     if (light.frame == LightFrame::kHead) return -camera.direction;
     const glm::dvec3 way = -unitVectorOf(light.direction);
@@ -169,7 +167,7 @@ glm::dvec3 towards(const Light& light, const Camera& camera) {
     return way.x * camera.right + way.y * camera.up - way.z * camera.direction;
 }
 
-// Of length 1; of ways that are opposite there is none.
+// Of length 1; 0 if the ways are opposite.
 glm::vec3 halfWay(const glm::dvec3& a, const glm::dvec3& b) {
     const double length = glm::length(a + b);
     return glm::vec3(length > 0 ? (a + b) / length : glm::dvec3(0));
@@ -222,22 +220,22 @@ void ReflectedLight::lightVoxels(const WordPlace& place, const std::uint16_t* cl
 }
 
 glm::mat3 worldFromIndexGradient(const Volume& volume) {
-    const glm::dmat3 world = glm::dmat3(volume.worldFromIndex) / smallestSize(volume);
+    const glm::dmat3 world = glm::dmat3(volume.worldFromIndex()) / smallestSize(volume);
     return glm::mat3(glm::transpose(glm::inverse(world)));
 }
 
 namespace {
 
-// Adds to looks how much of their opacity voxels have.
+// Adds to looks how much voxels fade.
 class FadingPainter : public VoxelPainter {
   public:
-    // @param inner  who paints them otherwise; null: they look as their classes do
+    // @param inner  painter of the looks; null: voxels look like their classes
     FadingPainter(const Volume& volume, std::vector<glm::dvec2> factors,
                   std::unique_ptr<const VoxelPainter> inner)
         : inner_(std::move(inner)),
           scale_(inner_ && inner_->gradientScale()
                      ? *inner_->gradientScale()
-                     : scaledValues(volume, 0.5 * volume.valueMin + 0.5 * volume.valueMax)),
+                     : scaledValues(volume, 0.5 * volume.valueMin() + 0.5 * volume.valueMax())),
           worldFromGradient_(worldFromIndexGradient(volume)),
           factors_(std::move(factors)) {
         unit_ = scale_.unit / smallestSize(volume);
@@ -284,7 +282,7 @@ class FadingPainter : public VoxelPainter {
     GradientScale scale_;
     glm::mat3 worldFromGradient_;
     std::vector<glm::dvec2> factors_;
-    double unit_;  // data units a world unit that a gradient of length 1 is
+    double unit_;  // data units per world unit for a gradient of length 1
 };
 
 }  // namespace
@@ -297,7 +295,7 @@ std::unique_ptr<const VoxelPainter> makeFadingPainter(const Volume& volume,
 
 namespace {
 
-// Looks are colours.
+// Looks are colours (lookOfColor).
 class OwnColors : public LookLight {
   public:
     explicit OwnColors(const ClassTable& classes) : LookLight(VoxelUnits(classes, glm::dvec3(1))) {}
@@ -312,10 +310,10 @@ class OwnColors : public LookLight {
     }
 };
 
-// Colours that grow evenly from one end of the volume to the other.
+// Colours that change evenly from one end of the volume to the other.
 class PositionPainter : public VoxelPainter {
   public:
-    // A channel is slopes[channel] * index position + starts[channel], of 0..1.
+    // Channel c is slopes[c] * index position + starts[c], 0..1.
     PositionPainter(const glm::dmat3& slopes, const glm::dvec3& starts)
         : slopes_(slopes), starts_(starts) {}
 
@@ -344,14 +342,13 @@ class PositionPainter : public VoxelPainter {
     glm::dvec3 starts_;
 };
 
-// A number that grows evenly: slope * index position + start.
+// A linear function: slope * index position + start.
 struct Share {
     glm::dvec3 slope{0.0};
     double start = 0;
 };
 
-// Of the way from the voxel centre that lies lowest along `slope` to the highest; 0 if there is but
-// one place.
+// Position, 0..1, from the lowest to the highest voxel centre along `slope`; 0 if all coincide.
 Share shareAlong(const glm::dvec3& slope, const IndexBox& box) {
     double low = 0;
     double high = 0;
@@ -382,13 +379,13 @@ std::unique_ptr<const VoxelPainter> makePositionPainter(const Volume& volume, Co
         for (int axis = 0; axis < 3; ++axis) {
             glm::dvec3 along(0.0);
             along[axis] = 1;
-            setChannel(axis, shareAlong(along, volume.box));
+            setChannel(axis, shareAlong(along, volume.box()));
         }
     } else {
         const int axis = int(colorBy) - int(ColorBy::kX);
-        const glm::dmat4& world = volume.worldFromIndex;
+        const glm::dmat4& world = volume.worldFromIndex();
         const Share share =
-            shareAlong({world[0][axis], world[1][axis], world[2][axis]}, volume.box);
+            shareAlong({world[0][axis], world[1][axis], world[2][axis]}, volume.box());
         setChannel(0, share);
         setChannel(2, {-share.slope, 1 - share.start});
     }

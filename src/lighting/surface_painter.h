@@ -10,10 +10,10 @@
 
 namespace deltasplat {
 
-/// What surfaces reflect towards a camera. Looks are gradients (lookOfGradient).
+/// Reflected light of surfaces. Looks are gradients (setSlope).
 class ReflectedLight : public LookLight {
   public:
-    /// @param isSolid  whether gradients point out of something, whose surface is all that is seen
+    /// @param isSolid  whether only the surface is visible and gradients point out of it
     ReflectedLight(const Shading& shading, const ClassTable& classes, const LitScene& scene,
                    bool isSolid = false);
 
@@ -27,10 +27,9 @@ class ReflectedLight : public LookLight {
     std::optional<EyeOfVoxels> eye_;
 };
 
-/// Returns what makes gradients by index gradients in the world, by the smallest voxel size.
+/// Returns the map from index gradients to world gradients per smallest voxel size.
 glm::mat3 worldFromIndexGradient(const Volume& volume);
 
-/// Returns gradient number n of a field, in the world.
 inline glm::vec3 worldGradient(const glm::mat3& worldFromIndex, const BlockField& field,
                                std::size_t n) {
     const glm::mat3& m = worldFromIndex;
@@ -40,8 +39,8 @@ inline glm::vec3 worldGradient(const glm::mat3& worldFromIndex, const BlockField
             m[0].z * gx[n] + m[1].z * gy[n] + m[2].z * gz[n]};
 }
 
-/// Makes a vector of length kMostSlope times the share that is shaded the look of a voxel. What
-/// mirrors each other gives what mirrors each other.
+/// Stores a vector, of length kMostSlope times the shaded share, in a look. Rounds symmetrically,
+/// so that mirrored vectors have mirrored looks.
 inline void setSlope(OwnLook& look, const glm::vec3& slope) {
     for (int c = 0; c < 3; ++c) {
         const float nearest = slope[c] + std::copysign(0.5f, slope[c]);

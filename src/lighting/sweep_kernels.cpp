@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The work of sweeps on slices of blocks, compiled once for each SIMD level. Every number is
-// reckoned by itself, in one order, so that every level gives the same bits.
+// Compiled once per SIMD level. Operations have a fixed order, so all levels give the same bits.
 #include "lighting/sweep_kernels.h"
 
 #include "base/simd_targets.h"
@@ -8,7 +7,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lighting/sweep_kernels.cpp"
 #include "hwy/foreach_target.h"
-// After foreach_target.h, as Highway asks.
+// Highway requires this after foreach_target.h.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -62,12 +61,12 @@ void readSweptKernel(const SweptPlace& place, int end, std::uint16_t* codes) {
 
 void addSweptKernel(const SweptPlace& place, int end, const float* own) {
     const RowTag tag;
-    // Rows as the columns of the plane see them: nine, what is behind the last is that of nothing.
+    // Rows interpolated at the nine columns of the plane; zeros behind the last.
     HWY_ALIGN float sums[10][16] = {};
     const auto now = hn::Set(tag, 1 - place.share.y);
     const auto next = hn::Set(tag, place.share.y);
     for (int u = 0; u < 8; ++u) {
-        // One before the first voxel of the row, and one behind the last.
+        // One zero before the first voxel of the row, and one behind the last.
         HWY_ALIGN float row[24] = {};
         for (std::size_t v = 0; v < 8; v += hn::Lanes(tag))
             hn::StoreU(hn::LoadU(tag, own + 8 * u + v), tag, row + 1 + v);

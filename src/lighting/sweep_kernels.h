@@ -7,39 +7,35 @@
 
 namespace deltasplat {
 
-/// What light meets in a slice.
+/// Extinction in a slice.
 struct MetClasses {
-    const float* extinctions;  ///< [classes]: in a world unit, finite
-    float step;                ///< world units that light travels in a slice
-    float most;                ///< beyond which nothing of it is left
+    const float* extinctions;  ///< [classes]: per world unit, finite
+    float step;                ///< world units of the light's way through a slice
+    float most;                ///< beyond this extinction no light is left
 };
 
-/// Where a block's voxels of a slice lie on the plane of what light has come through: voxel (u, v)
-/// between rows u and u + 1, columns v and v + 1.
+/// A slice of a block on the swept plane: voxel (u, v) lies between rows u, u+1, columns v, v+1.
 struct SweptPlace {
     float* first;  ///< row `begin`, column 0
     std::size_t pitch;
-    int begin;        ///< rows before it are left out
-    glm::vec2 share;  ///< of the way from a row, or column, to the next: 0..1
+    int begin;        ///< rows before this one are skipped
+    glm::vec2 share;  ///< of the way to the next row and column: 0..1
 };
 
-/// Extinctions are stated by the square root, in 1 / kDepthSteps: finely where little is met, and
-/// up to 1023.
+/// Extinctions are stored as square roots in 1 / kDepthSteps: fine where small, and up to 1023.
 inline constexpr float kDepthSteps = 2048;
 
-/// Looks up what light meets in the voxels of a slice of a block. The same bits at every SIMD
-/// level, as those below.
-/// @param classes  [64]
-/// @param own      [64]: extinction on the way through
+/// Looks up the extinctions of voxels. The same bits at every SIMD level, like the functions below.
+/// @param own  [64]: extinction through the voxels of `classes`, [64]
 /// @return whether there is any
 bool lookUpMet(const MetClasses& met, const std::uint16_t* classes, float* own);
-/// Reads what light has come through before it comes to voxels.
+/// Reads the extinction on the way to voxels.
 /// @param end    of rows of voxels, 0..8
 /// @param codes  [64]: square roots, in 1 / kDepthSteps
 void readSwept(const SweptPlace& place, int end, std::uint16_t* codes);
-/// Adds what light comes through in voxels.
+/// Adds the extinctions of voxels.
 /// @param end  of rows of the plane, 0..9
-/// @param own  [64]: those that these rows lie between have to be there
+/// @param own  [64]: needed for voxels between these rows
 void addSwept(const SweptPlace& place, int end, const float* own);
 
 }  // namespace deltasplat

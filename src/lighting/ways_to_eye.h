@@ -8,24 +8,22 @@
 
 namespace deltasplat {
 
-/// The ways to an eye, or a light, from a word's voxels, of any length: `first + u * alongU + v *
-/// alongV`.
+/// Ways from a word's voxels to an eye or light, not normalized: `first + u alongU + v alongV`.
 struct WaysToEye {
     glm::vec3 first;
     glm::vec3 alongU;
     glm::vec3 alongV;
 };
 
-/// An eye and the voxels that it sees, which finds these ways.
+/// An eye, or a light, in the order of voxels.
 class EyeOfVoxels {
   public:
     /// @param worldFromVoxel  of (slice, u, v)
-    /// @param unitWorld       that ways are stated in
+    /// @param unitWorld       unit of the ways
     EyeOfVoxels(const glm::dvec3& eyeWorld, const glm::dmat4& worldFromVoxel, double unitWorld = 1)
         : eye_(glm::inverse(worldFromVoxel) * glm::dvec4(eyeWorld, 1)),
           steps_(glm::dmat3(worldFromVoxel) / unitWorld) {}
 
-    /// @param place  of the word's first voxel
     WaysToEye waysFrom(const glm::ivec3& place) const {
         return {glm::vec3(steps_ * (eye_ - glm::dvec3(place))), glm::vec3(-steps_[1]),
                 glm::vec3(-steps_[2])};
@@ -35,7 +33,7 @@ class EyeOfVoxels {
 
   private:
     glm::dvec3 eye_;    // (slice, u, v)
-    glm::dmat3 steps_;  // in units of the world, along these
+    glm::dmat3 steps_;  // world ways along slice, u and v, in units
 };
 
 }  // namespace deltasplat

@@ -5,6 +5,7 @@
 
 #include <dlfcn.h>
 #include <link.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/auxv.h>
@@ -63,17 +64,12 @@ std::optional<std::filesystem::path> libraryFile() {
                                    reinterpret_cast<void**>(&loaded), RTLD_DL_LINKMAP) != 0;
     if (!isKnown || !loaded || !loaded->l_name || *loaded->l_name == '\0') return {};
     std::error_code error;
-    const std::filesystem::path library = std::filesystem::canonical(loaded->l_name, error);
-    return error ? loaded->l_name : library;
-}
-
-// Whoever may write into a folder of programs, such as /tmp, is not to have theirs run.
-bool isTrusted(const std::filesystem::path& file, const std::filesystem::path& own) {
-    struct stat status {};
-    struct stat ofOwn {};
-    if (::stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return false;
-    const bool isOurs = ::stat(own.c_str(), &ofOwn) == 0 && status.st_uid == ofOwn.st_uid;
-    return isOurs || status.st_uid == 0 || status.st_uid == ::geteuid();
+    const std::filesystem::path named = loaded->l_name;
+    const std::filesystem::path library = std::filesystem::canonical(named, error);
+    if (!error) return library;
+    // A relative name means another file once the working folder has changed.
+    if (named.is_relative()) refuse(printable(named.string()), "the library's whole path");
+    return named;
 }
 
 std::string helperFile() {
@@ -105,7 +101,7 @@ class SpawnSetup {
         sigset_t signals;
         ::sigemptyset(&signals);
         ::posix_spawnattr_setsigmask(&attributes_, &signals);
-        for (const int signal : {SIGXCPU, SIGXFSZ, SIGABRT}) ::sigaddset(&signals, signal);
+        for (const int signal : {SIGXCPU, SIGXFSZ, SIGABRT, SIGIO}) ::sigaddset(&signals, signal);
         ::posix_spawnattr_setsigdefault(&attributes_, &signals);
         ::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
     }
@@ -124,8 +120,7 @@ class SpawnSetup {
 };
 
 pid_t spawnHelper(std::string file, std::string work, int socket) {
-    std::string parent = std::to_string(::getpid());
-    char* const arguments[] = {file.data(), parent.data(), work.data(), nullptr};
+    char* const arguments[] = {file.data(), work.data(), nullptr};
     const SpawnSetup setup(socket);
     pid_t process = 0;
     const int error = ::posix_spawn(&process, file.c_str(), setup.files(), setup.attributes(),
@@ -178,6 +173,9 @@ int HelperProcess::awaitEnd() {
 }
 
 void HelperProcess::beginRequest(std::string_view request, std::size_t bytes) {
+    // One that was ended while it had nothing to do is no reason to fail.
+    pollfd other{socket_.get(), POLLRDHUP, 0};
+    if (process_ != 0 && ::poll(&other, 1, 0) != 0) awaitEnd();
     if (process_ == 0) start();
     bytes_ = bytes;
     isBusy_ = true;
@@ -189,9 +187,11 @@ void HelperProcess::beginRequest(std::string_view request, std::size_t bytes) {
 
 // An installation may be replaced while a program of the one before runs.
 void HelperProcess::noteReady(const std::string& version) {
-    if (version != DELTASPLAT_VERSION)
-        refuse("version " + printable(version), DELTASPLAT_VERSION ", as the library");
-    isReady_ = true;
+    isReady_ = version == DELTASPLAT_VERSION;
+    if (isReady_) return;
+    ::kill(process_, SIGKILL);
+    awaitEnd();
+    refuse("version " + printable(version), DELTASPLAT_VERSION ", as the library");
 }
 
 bool HelperProcess::receiveAnswer(std::byte* to, std::string& note) {
@@ -212,6 +212,7 @@ bool HelperProcess::receiveAnswer(std::byte* to, std::string& note) {
 }
 
 bool HelperProcess::finishRequest(std::byte* to, std::string* note) {
+    if (process_ == 0) fail("nothing was asked for");
     std::string last;
     isBusy_ = !receiveAnswer(to, last);
     if (note) *note = last;

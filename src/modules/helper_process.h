@@ -2,11 +2,14 @@
 #pragma once
 
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/types.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -53,12 +56,27 @@ inline bool receiveBytes(int socket, void* to, std::size_t bytes) {
     return true;
 }
 
+/// Whether a program or module may be run: it belongs to root, to the user, or to the owner of
+/// `own`, and so does the link that leads to it. Others may write into a folder of programs such as
+/// /tmp.
+inline bool isTrusted(const std::filesystem::path& file, const std::filesystem::path& own) {
+    struct stat link {};
+    struct stat status {};
+    struct stat ofOwn {};
+    if (::lstat(file.c_str(), &link) != 0 || ::stat(file.c_str(), &status) != 0) return false;
+    const bool hasOwn = ::stat(own.c_str(), &ofOwn) == 0;
+    const auto mayBelong = [&](uid_t user) {
+        return user == 0 || user == ::geteuid() || (hasOwn && user == ofOwn.st_uid);
+    };
+    return S_ISREG(status.st_mode) && mayBelong(link.st_uid) && mayBelong(status.st_uid);
+}
+
 /// The program deltasplat-helper (tools/helper/), in which foreign libraries work at foreign bytes,
 /// so that one which aborts, hangs or takes all memory ends the helper alone. It starts at the
 /// first request and is kept for further ones; after a request that it did not do, the next one
 /// starts it anew. It prints nothing. A request has one minute of processor time, and the memory
-/// that is left to this process but at most 64 times `bytes` and a GiB. All calls come from one
-/// thread; the helper ends with that thread.
+/// that is left to this process but at most 64 times `bytes` and a GiB. The helper
+/// ends with this process, even in the middle of its work. Calls come from one thread at a time.
 class HelperProcess {
   public:
     /// @param work   what the helper loads: "dicom" or "colors"

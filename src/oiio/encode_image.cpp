@@ -51,16 +51,15 @@ std::string encodeInMemory(const std::filesystem::path& file, const char* format
 
 namespace {
 
-// The most bytes of an image description that fit into a segment of a .jpg, besides all else.
+// Longest image description that fits into a .jpg segment beside the rest.
 constexpr std::size_t kMaxJpegText = 30000;
 constexpr const char* kJpegCompression = "jpeg:95";
 
-// @param size  of the picture
 PixelBox regionOf(const ImageFileOptions& options, glm::ivec2 size) {
     return options.region.value_or(PixelBox{{0, 0}, size});
 }
 
-// For formats that have no names of one's own.
+// For formats without custom metadata names.
 std::string description(const ImageFileOptions& options) {
     std::string lines;
     for (const auto& [name, text] : options.metadata) {
@@ -70,13 +69,13 @@ std::string description(const ImageFileOptions& options) {
     return lines;
 }
 
-// OpenImageIO does not live through an empty one.
+// OpenImageIO crashes on an empty description.
 void addDescription(const std::string& text, OIIO::ImageSpec& spec) {
     if (!text.empty()) spec.attribute("ImageDescription", text);
 }
 
-// Encodes some of a picture's pixels, as many as `spec` says.
-// @param values  of all, `[height][width][spec.nchannels]`
+// Encodes the part of a picture whose size `spec` gives.
+// @param values  the whole picture, `[height][width][spec.nchannels]`
 template <typename Value>
 std::string encode(const std::filesystem::path& file, const char* formatName,
                    const OIIO::ImageSpec& spec, const UnclearedVector<Value>& values, int width,
@@ -94,7 +93,7 @@ template <typename Sample>
 std::string encodeStraight(const std::filesystem::path& file, const char* formatName,
                            const Image& image, OIIO::ImageSpec spec,
                            const ImageFileOptions& options) {
-    // The samples are final: OpenImageIO must not divide them by alpha once more.
+    // The samples are straight already: OpenImageIO must not divide by alpha again.
     spec.attribute("oiio:UnassociatedAlpha", 1);
     return encode(file, formatName, spec,
                   straightSrgb<Sample>(image, options.dither && sizeof(Sample) == 1), image.size.x,
@@ -121,8 +120,8 @@ std::string encodeTiff(const std::filesystem::path& file, const Image& image,
     spec.alpha_channel = 3;
     spec.attribute("compression", "zip");
     addDescription(description(options), spec);
-    // Without a date OpenImageIO stores the clock time. A colour space it would put into a second
-    // directory, whose place OpenImageIO 2.4 stores as the first one's: sRGB is what is assumed.
+    // Without a date OpenImageIO stores the current time. A colour space goes into a second
+    // directory, with a wrong offset in OpenImageIO 2.4; readers assume sRGB anyway.
     spec.attribute("DateTime", "");
     return encodeStraight(file, "tiff", image, spec, options);
 }

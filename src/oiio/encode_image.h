@@ -9,9 +9,8 @@
 
 namespace deltasplat {
 
-/// Encodes in memory, so that what can go wrong with the disk goes wrong in one place.
-/// @param file         for messages
-/// @param writePixels  false if the output's error says why not
+/// Encodes an image in memory; the caller writes the file, so disk errors are handled in one place.
+/// @param writePixels  returns false if the output's error message has the reason
 std::string encodeInMemory(const std::filesystem::path& file, const char* formatName,
                            const OIIO::ImageSpec& spec,
                            const std::function<bool(OIIO::ImageOutput&)>& writePixels);

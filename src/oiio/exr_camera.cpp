@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: the OpenEXR project, "Standard Attributes" (worldToCamera, worldToNDC). Renderers agree
-// on less than that page says: the camera's space is left-handed (z goes away from it) in some and
-// right-handed in others, NDC goes down from 0 to 1 or up from -1 to 1. The matrices tell.
+// Based on: the OpenEXR project, "Standard Attributes" (worldToCamera, worldToNDC). Renderers
+// deviate: camera space is left-handed (z forward) or right-handed, and NDC y runs down from 0 to 1
+// or up from -1 to 1. The matrices reveal which.
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ namespace deltasplat {
 
 namespace {
 
-// Halves of rounding that floats of a matrix, multiplied with another's inverse, leave.
+// Relative rounding error after multiplying a float matrix by another's inverse.
 constexpr double kRounding = 1e-4;
 
 glm::dmat4 readMatrix(const std::filesystem::path& file, const OIIO::ImageSpec& spec,
@@ -52,7 +52,7 @@ glm::dmat4 readMatrix(const std::filesystem::path& file, const OIIO::ImageSpec& 
 
 glm::dmat4 inverseOf(const std::filesystem::path& file, const glm::dmat4& matrix) {
     glm::dmat4 inverse = glm::inverse(matrix);
-    // Rounding leaves no projection where there was none.
+    // Rounding must not turn an affine matrix into a projection.
     const bool isAffine =
         matrix[0].w == 0 && matrix[1].w == 0 && matrix[2].w == 0 && matrix[3].w == 1;
     for (int i = 0; isAffine && i < 4; ++i) inverse[i].w = matrix[i].w;
@@ -60,15 +60,15 @@ glm::dmat4 inverseOf(const std::filesystem::path& file, const glm::dmat4& matrix
     refuseFile(file, "a worldToCamera that is singular", "one that can be inverted");
 }
 
-// Coordinates of a picture of a plane at distance 1 (of a parallel picture: at any): x and y of a
-// point (x, y) of the camera's space are `scale` times it plus `middle`.
+// Maps a point (x, y) of camera space, at depth 1 or for a parallel picture at any depth, to
+// picture coordinates: `scale` * point + `middle`.
 struct PictureMap {
     bool isParallel = false;
     glm::dvec2 scale{1};
     glm::dvec2 middle{0};
 };
 
-// @param ndcFromDepth  from (right, up, ahead)
+// @param ndcFromDepth  NDC from (right, up, ahead)
 PictureMap pictureMap(const std::filesystem::path& file, const glm::dmat4& ndcFromDepth) {
     const glm::dmat4& m = ndcFromDepth;
     const double largest = std::max({std::abs(m[0][0]), std::abs(m[1][1]), kRounding});
@@ -96,7 +96,7 @@ CameraMotion image_module::readExrCamera(const std::filesystem::path& file,
     glm::dmat4 cameraFromWorld = readMatrix(file, spec, "worldToCamera");
     const glm::dmat4 ndcFromWorld = readMatrix(file, spec, "worldToNDC");
     if (glm::determinant(glm::dmat3(cameraFromWorld)) < 0) {
-        // Left-handed: z goes ahead.
+        // Left-handed: z points forward.
         for (int i = 0; i < 4; ++i) cameraFromWorld[i].z = -cameraFromWorld[i].z;
     }
     FilmCamera camera;
@@ -107,7 +107,7 @@ CameraMotion image_module::readExrCamera(const std::filesystem::path& file,
     const PictureMap map =
         pictureMap(file, ndcFromWorld * (camera.worldFromCamera * cameraFromDepth));
 
-    // 0 to 1 downwards, or -1 to 1 upwards.
+    // NDC y runs from 0 to 1 downwards, or from -1 to 1 upwards.
     const bool goesUp = map.scale.y > 0;
     if (goesUp)
         listener.warn(file.string() + ": worldToNDC goes up, not down, and is read as -1 to 1");
@@ -118,7 +118,7 @@ CameraMotion image_module::readExrCamera(const std::filesystem::path& file,
     if (!(size.x >= 1 && size.y >= 1)) refuseFile(file, "no display window", "one");
     camera.sizePixels = glm::ivec2(size);
     camera.pixelAspect = frame.x / size.x / (frame.y / size.y);
-    // Square, but for rounding.
+    // Removes rounding from square pixels.
     if (std::abs(camera.pixelAspect - 1) < kRounding) camera.pixelAspect = 1;
     if (!(camera.pixelAspect >= kLeastPixelAspect && camera.pixelAspect <= kMostPixelAspect))
         refuseFile(file, "pixels " + numberText(camera.pixelAspect) + " times as wide as high",
@@ -139,10 +139,10 @@ CameraMotion image_module::readExrCamera(const std::filesystem::path& file,
 
 namespace {
 
-// What renderers write where there is nothing, and more.
+// Renderers write this depth, or more, for empty pixels.
 constexpr float kNothing = 1e10f;
 
-// The last part of a layer's name: "depth" of "ViewLayer.Depth.Z".
+// Returns the last part of a layer's name: "depth" of "ViewLayer.Depth.Z".
 std::string layerOf(const std::string& channel) {
     const std::string layer = channel.substr(0, channel.rfind('.'));
     return layer.substr(layer.rfind('.') + 1);

@@ -31,26 +31,25 @@ namespace deltasplat {
 
 namespace {
 
-/// Whether a file is a grey Netpbm image, plain (P2) or binary (P5). OpenImageIO 2.4 stretches such
-/// samples over the type's range, and rounds half of those of 16 bits down by one.
+/// Whether a file is a grey Netpbm image, plain (P2) or binary (P5). OpenImageIO 2.4 stretches its
+/// samples to the type's range, and rounds half of the 16-bit samples down by one.
 bool isPgm(const std::filesystem::path& file);
 
-/// Reads the samples of one as they are stored, whatever its largest is; files with several images
-/// have but the first. To numbers of one byte if the file says that none is above 255, else of two.
-/// @param to  as many as the image has pixels
-/// @throw Error(kInput) unless it has `pixels` whole samples, none above what it says
+/// Reads a .pgm's first image with samples as stored, whatever the maximum. Writes one byte per
+/// sample if the maximum is at most 255, else two.
+/// @param to  one entry per pixel
+/// @throw Error(kInput) unless the file has `pixels` whole samples, none above its maximum
 void readPgm(const std::filesystem::path& file, std::size_t pixels, std::span<std::byte> to);
 
 // Based on: Netpbm's description of its pgm format.
 constexpr std::uint32_t kMost = 65535;
 
-// Takes numbers from the front of a file's bytes.
 class Numbers {
   public:
     Numbers(const std::filesystem::path& file, const std::vector<unsigned char>& bytes)
         : file_(file), bytes_(bytes) {}
 
-    // What stands between numbers is passed over, comments too.
+    // Skips white space and comments.
     std::uint32_t next() {
         while (place_ < bytes_.size() && !std::isdigit(bytes_[place_])) {
             const unsigned char byte = bytes_[place_++];
@@ -70,7 +69,7 @@ class Numbers {
         }
         return std::uint32_t(number);
     }
-    // The raster of a binary image begins behind one byte.
+    // A binary raster starts one byte after the header's last number.
     std::size_t place() const { return place_; }
     void skip(std::size_t bytes) { place_ += bytes; }
 
@@ -100,7 +99,7 @@ void readPgm(const std::filesystem::path& file, std::size_t pixels, std::span<st
         bytes.resize(source.read(place, bytes.data(), bytes.size()));
         return bytes;
     };
-    // Comments aside, a header has some twenty bytes.
+    // A header has about twenty bytes, plus comments.
     constexpr std::uint64_t kMostHeader = std::uint64_t{1} << 16;
     std::vector<unsigned char> bytes = read(0, std::min(kMostHeader, source.size()));
     const bool isBinary = bytes.size() > 1 && bytes[1] == '5';
@@ -141,19 +140,18 @@ void readPgm(const std::filesystem::path& file, std::size_t pixels, std::span<st
     }
 }
 
-/// What the header of a .png or .bmp says of its numbers.
+/// Storage of numbers, from the header of a .png or .bmp.
 struct StoredNumbers {
-    int bits = 8;            ///< of a number: 1, 2, 4, 8 or 16; of a .bmp as it is read
-    bool isPalette = false;  ///< whether they are those of a palette's colours
-    /// Of a palette: what stands at which places of a file whose numbers are greys.
+    int bits = 8;            ///< per number: 1, 2, 4, 8 or 16; for a .bmp as decoded
+    bool isPalette = false;  ///< whether they are palette indices
+    /// For a palette: replacement bytes, by offset, that make the indices greys.
     std::vector<std::pair<std::uint64_t, std::string>> asGreys;
 };
 
-/// Returns nothing for what has another extension, or no such header.
+/// Returns nothing for other extensions or without such a header.
 std::optional<StoredNumbers> storedNumbers(const std::filesystem::path& file);
 
-// Based on: the PNG specification (W3C, third edition), sections 5 and 11; Microsoft's
-// BITMAPINFOHEADER.
+// Based on: PNG specification (W3C, third edition), sections 5, 11; Microsoft's BITMAPINFOHEADER.
 std::string read(const FileBytes& file, std::uint64_t place, std::size_t bytes) {
     std::string text(bytes, '\0');
     text.resize(file.read(place, text.data(), bytes));
@@ -170,10 +168,9 @@ std::uint32_t numberAt(const std::string& bytes, std::size_t at, int width, bool
 }
 
 constexpr std::size_t kPngHeader = 13, kChecksum = 4;  // bytes
-constexpr std::uint64_t kPngPlace = 16;                // of the header
+constexpr std::uint64_t kPngPlace = 16;                // offset of the header
 
-// The header and its checksum as those of greys, and what is known of colours, which stands before
-// the pixels, as what may be passed over.
+// Turns the header and its checksum into a grey image's, and makes colour chunks ignorable.
 void addPngGreys(const FileBytes& file, std::string header, std::size_t colorType,
                  StoredNumbers& numbers) {
     header[colorType] = 0;
@@ -183,7 +180,7 @@ void addPngGreys(const FileBytes& file, std::string header, std::size_t colorTyp
     for (int shift = 24; shift >= 0; shift -= 8) header += char((sum >> shift) & 0xff);
     numbers.asGreys.emplace_back(kPngPlace, header);
     std::uint64_t place = kPngPlace + kPngHeader + kChecksum;
-    // Each stands at most once in a file.
+    // Each chunk occurs at most once.
     bool colors = false, opacities = false;
     while (true) {
         const std::string head = read(file, place, 8);
@@ -207,7 +204,7 @@ std::optional<StoredNumbers> numbersOfPng(const FileBytes& file) {
     return numbers;
 }
 
-// The table of colours as one of greys.
+// Replaces the colour table by a grey ramp.
 std::optional<StoredNumbers> numbersOfBmp(const FileBytes& file) {
     constexpr std::size_t kSize = 14, kBits = 28, kColors = 46;
     constexpr std::size_t kOldHeader = 12;
@@ -238,7 +235,7 @@ std::optional<StoredNumbers> storedNumbers(const std::filesystem::path& path) {
 using OIIO::ImageInput;
 using OIIO::ImageSpec;
 
-// OpenImageIO repeats itself on further lines.
+// OpenImageIO repeats its message on further lines.
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& complaint,
                          const std::string& expected) {
     const std::string reason = complaint.empty()
@@ -252,11 +249,11 @@ std::unique_ptr<ImageInput> openInput(const std::filesystem::path& file,
                                       OIIO::Filesystem::IOProxy* proxy, ImageSpec& spec) {
     requireRegularFile(file);
     ImageSpec config;
-    config["oiio:UnassociatedAlpha"] = 1;  // alpha is not asked for, so it must change nothing
-    const SilentStderr silent;             // libpng prints what OpenImageIO then reports
+    config["oiio:UnassociatedAlpha"] = 1;  // unused alpha must not change colours
+    const SilentStderr silent;             // libpng prints errors that OpenImageIO also reports
     const ClearedMemory cleared;
-    // Asked for by the name of a file that its format's reader refuses, OpenImageIO would hand it
-    // to all of its readers, those of DICOM and films too.
+    // Asks for the format's own reader. Given a file name that this reader refuses, OpenImageIO
+    // would try all others, including DICOM and movies.
     limitExrThreads(isTiffName(file) || requireClaims(file));
     auto input = ImageInput::create(lowerExtension(file).substr(1));
     if (input && proxy != nullptr) input->set_ioproxy(proxy);
@@ -266,7 +263,7 @@ std::unique_ptr<ImageInput> openInput(const std::filesystem::path& file,
     return input;
 }
 
-// OpenImageIO does not name the packing of formats that always pack, such as PNG.
+// OpenImageIO gives no compression for formats that always compress, such as PNG.
 std::string packingOf(const std::filesystem::path& file, const ImageSpec& spec) {
     const std::string extension = lowerExtension(file);
     const bool netpbm = extension.size() == 4 && extension[1] == 'p' && extension[3] == 'm';
@@ -286,7 +283,7 @@ bool hasColors(const ImageSpec& spec) {
 }
 
 void requireSane(const std::filesystem::path& file, const ImageSpec& spec) {
-    // OpenImageIO says that it has read them, and leaves zeros.
+    // OpenImageIO reports success for these but returns zeros.
     const bool isOneByOne = spec.tile_width > 0 || spec.height == 1;
     if (isTiffName(file) && isOneByOne && spec.format.size() == 8) {
         throw Error(ErrorCode::kInput, file.string(),
@@ -306,7 +303,7 @@ void requireSane(const std::filesystem::path& file, const ImageSpec& spec) {
                 "enough for " + sizeText(spec));
 }
 
-/// A file some of whose bytes are others for who reads it.
+/// A file in which readers see some bytes replaced.
 class PatchedFile : public OIIO::Filesystem::IOProxy {
   public:
     explicit PatchedFile(const std::filesystem::path& file)
@@ -335,7 +332,7 @@ class PatchedFile : public OIIO::Filesystem::IOProxy {
     }
 
   private:
-    // What reads it may be C, through which nothing may be thrown.
+    // C readers must not see exceptions.
     std::size_t readPlain(void* to, std::size_t bytes, std::int64_t place) const {
         try {
             return place < 0 ? 0 : bytes_.read(std::uint64_t(place), to, bytes);
@@ -343,7 +340,7 @@ class PatchedFile : public OIIO::Filesystem::IOProxy {
             return 0;
         }
     }
-    // Writes over those bytes that have been read.
+    // Overwrites patched bytes within the range just read.
     static void replace(std::uint64_t field, const std::string& text, std::uint64_t place,
                         std::size_t got, void* to) {
         for (std::size_t i = 0; i < text.size(); ++i) {
@@ -358,8 +355,7 @@ class PatchedFile : public OIIO::Filesystem::IOProxy {
 
 namespace {
 
-// A TIFF as if it had one page: libtiff looks for each page from the first one on, which takes the
-// square of their number.
+// Makes a page the only one: libtiff searches each page from the first, taking quadratic time.
 void patchTiff(const TiffPages& tiff, const TiffPage& page, bool asNumbers, PatchedFile& file) {
     constexpr std::uint64_t kBlackIsZero = 1;
     file.patch(tiff.firstField, page.table, tiff.offsetBytes, tiff.bigEndian);
@@ -368,7 +364,7 @@ void patchTiff(const TiffPages& tiff, const TiffPage& page, bool asNumbers, Patc
         file.patch(page.paletteField, kBlackIsZero, 2, tiff.bigEndian);
 }
 
-// What OpenImageIO makes of a number of few bits is its share of the largest of more, rounded down.
+// Reverts OpenImageIO's stretching: value * largest / largest of few bits, rounded down.
 template <typename T>
 void unstretch(int bits, std::span<std::byte> bytes) {
     const std::uint64_t highest = (std::uint64_t{1} << bits) - 1;
@@ -387,7 +383,7 @@ void unstretch(const OIIO::TypeDesc& type, int bits, std::span<std::byte> bytes)
     if (type == OIIO::TypeDesc::UINT32) unstretch<std::uint32_t>(bits, bytes);
 }
 
-// How many bits numbers have as they are stored, if OpenImageIO stretches them; else 0.
+// Returns the bits per stored number if OpenImageIO stretches numbers; else 0.
 int storedBits(const std::filesystem::path& file, const ImageSpec& spec,
                const std::optional<StoredNumbers>& said) {
     const int bits = said               ? said->bits
@@ -429,9 +425,9 @@ ImageFile::ImageFile(const std::filesystem::path& file, const ImagePages& pages,
     }
     input_ = openInput(file, proxy_.get(), spec_);
     if (page_ > 0) spec_ = input_->spec(page_);
-    // What is stored counts, as it does for wider numbers, which OpenImageIO leaves alone.
+    // OpenImageIO inverts only 8-bit numbers; undo that, because stored values count.
     isInverted_ = pages.isWhiteZero(page) && spec_.format == OIIO::TypeDesc::UINT8;
-    // Colours of a palette are whole bytes.
+    // Palette colours are whole bytes.
     const bool isColored = pages.isPalette(page) && !asNumbers;
     if (samples != Samples::kShown && !isColored) bits_ = storedBits(file, spec_, said);
     isPgm_ = spec_.nchannels == 1 && lowerExtension(file) == ".pgm" && isPgm(file);
@@ -457,15 +453,14 @@ bool ImageFile::readNative(int channels, void* to) {
     return true;
 }
 
-// OpenImageIO's read_image would take, and here clear, 64 MiB for each image.
+// OpenImageIO's read_image would allocate, and here clear, 64 MiB per image.
 bool ImageFile::readStored(int channels, void* to) {
     if (spec_.tile_width > 0) return readTiles(channels, static_cast<std::byte*>(to));
     return input_->read_native_scanlines(page_, 0, spec_.y, spec_.y + spec_.height, 0, 0, channels,
                                          to);
 }
 
-// One by one, for tiles go over the edges of an image: asked for all of them, OpenImageIO's TIFF
-// reader writes over the edges of what it is given.
+// One by one: asked for all tiles, OpenImageIO's TIFF reader overruns the buffer at image edges.
 bool ImageFile::readTiles(int channels, std::byte* to) {
     const std::size_t stored = std::size_t(spec_.nchannels) * spec_.format.size();
     const std::size_t wanted = std::size_t(channels) * spec_.format.size();
@@ -509,7 +504,7 @@ void ImageFile::read(int channels, OIIO::TypeDesc type, void* to) {
     const SilentStderr silent;
     const ClearedMemory cleared;
     const bool done = readPixels(channels, type, to);
-    // Some of its readers fill up what is missing, and only leave a complaint.
+    // Some readers fill in missing pixels and only leave an error message.
     const std::string complaint = input_->geterror();
     if (!done || !complaint.empty()) refuse(file_, complaint, "a whole image");
 }

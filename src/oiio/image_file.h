@@ -20,24 +20,23 @@ std::string sizeText(const OIIO::ImageSpec& spec);
 /// Whether the first channels are R, G and B.
 bool hasColors(const OIIO::ImageSpec& spec);
 
-/// @throw Error(kInput) unless it is flat, has pixels, the file can be long enough to hold them,
-///        and OpenImageIO can read such numbers
+/// @throw Error(kInput) unless the image is flat, has pixels, may fit into its file, and has a
+///        sample type that OpenImageIO can read
 void requireSane(const std::filesystem::path& file, const OIIO::ImageSpec& spec);
 
-/// How many pages an image file has, and where those of a TIFF are.
+/// The number of pages in an image file, and their places in a TIFF.
 class ImagePages {
   public:
     ImagePages() = default;
-    /// @throw Error(kInput) if the file is no image, or a TIFF that is not whole
+    /// @throw Error(kInput) if the file is no image, or a damaged TIFF
     explicit ImagePages(const std::filesystem::path& file);
 
     int count() const { return tiff_ ? int(tiff_->pages.size()) : count_; }
     const std::optional<TiffPages>& tiff() const { return tiff_; }
-    /// Whether its numbers are those of a palette's colours.
+    /// Whether the page's numbers are palette indices.
     bool isPalette(int page) const {
         return tiff_ ? tiff_->pages[std::size_t(page)].paletteField != 0 : isPalette_;
     }
-    /// Whether smaller values are meant to be shown brighter.
     bool isWhiteZero(int page) const {
         return tiff_ && tiff_->pages[std::size_t(page)].whiteIsZero;
     }
@@ -48,19 +47,19 @@ class ImagePages {
     bool isPalette_ = false;
 };
 
-/// What is read of a pixel.
+/// Interpretation of a pixel's samples.
 enum class Samples {
-    kShown,   ///< shares of what is white: numbers of 1 to 7 bits become ones of 8, and so on
-    kStored,  ///< numbers of few bits as they are stored
-    kNumbers  ///< the same, of a palette not the colours but their numbers
+    kShown,   ///< shares of white; 1 to 7 bits are stretched to 8, and so on
+    kStored,  ///< numbers as stored, even of few bits
+    kNumbers  ///< as kStored, but palette indices instead of colours
 };
 
 class PatchedFile;
 
-/// One page of an image file, open.
+/// One open page of an image file.
 class ImageFile {
   public:
-    /// @throw Error(kInput) if OpenImageIO refuses it
+    /// @throw Error(kInput) if OpenImageIO refuses the file
     ImageFile(const std::filesystem::path& file, const ImagePages& pages, int page,
               Samples samples = Samples::kShown);
     ~ImageFile();
@@ -69,7 +68,7 @@ class ImageFile {
 
     const OIIO::ImageSpec& spec() const { return spec_; }
     /// Reads the first channels of all pixels.
-    /// @throw Error(kInput) if OpenImageIO refuses them, or complains of them
+    /// @throw Error(kInput) if OpenImageIO refuses the pixels or reports an error
     void read(int channels, OIIO::TypeDesc type, void* to);
 
   private:
@@ -82,18 +81,17 @@ class ImageFile {
     std::unique_ptr<PatchedFile> proxy_;  // used by input_
     std::unique_ptr<OIIO::ImageInput> input_;
     OIIO::ImageSpec spec_;
-    int page_ = 0;  // as OpenImageIO counts
+    int page_ = 0;  // OpenImageIO's number
     bool isPgm_ = false;
     bool isInverted_ = false;  // by OpenImageIO
-    int bits_ = 0;             // of a number as it is stored, if OpenImageIO stretches it; else 0
+    int bits_ = 0;             // bits per stored number if OpenImageIO stretches it; else 0
 };
 
-/// Makes OpenEXR use as many threads as the library where OpenImageIO reads with it, which would
-/// start as many as there are cores. For who writes with it there is ExrThreads
-/// (src/image/exr_header.h).
-/// @param mayThread  whether there may be several at all: each has memory of its own
+/// Limits OpenEXR to the library's threads when OpenImageIO reads with it; the default is one per
+/// core. Writers use ExrThreads (src/image/exr_header.h).
+/// @param mayThread  whether several threads are allowed; each has its own memory
 inline void limitExrThreads(bool mayThread) {
-    constexpr int kNone = -1;  // but the caller
+    constexpr int kNone = -1;  // only the caller
     OIIO::attribute("exr_threads", mayThread && threadCount() > 1 ? threadCount() : kNone);
 }
 

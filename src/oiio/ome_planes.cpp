@@ -24,20 +24,19 @@
 namespace deltasplat {
 namespace {
 
-/// The beginning of an element: `<ome:Pixels SizeX="4">`.
+/// The start tag of an element: `<ome:Pixels SizeX="4">`.
 struct XmlTag {
-    std::string name;  ///< without what stands before a colon
+    std::string name;  ///< without the namespace prefix
     std::map<std::string, std::string> attributes;
 };
 
-/// Takes one element after the other from a text of XML, those in others behind them. What lies
-/// between, ends of elements, comments and declarations are passed over.
+/// Returns the start tags of an XML text in order; skips text, end tags, comments, declarations.
 class XmlTags {
   public:
     /// @param text  must outlive this
     explicit XmlTags(std::string_view text) : text_(text) {}
 
-    /// Returns nothing at the end, or where the text is no XML any more.
+    /// Returns nothing at the end, or where the text stops being XML.
     std::optional<XmlTag> next();
 
   private:
@@ -62,7 +61,7 @@ std::string utf8Of(std::uint32_t code) {
             char(0x80 | (code >> 6 & 0x3f)), char(0x80 | (code & 0x3f))};
 }
 
-// What stands between & and ;, or nothing for what is none of XML's.
+// Returns the character of an XML reference, given the text between & and ;.
 std::optional<std::string> characterNamed(std::string_view name) {
     constexpr std::array<std::pair<std::string_view, const char*>, 5> kNames{
         {{"lt", "<"}, {"gt", ">"}, {"amp", "&"}, {"quot", "\""}, {"apos", "'"}}};
@@ -78,7 +77,7 @@ std::optional<std::string> characterNamed(std::string_view name) {
 }
 
 std::string plainText(std::string_view text) {
-    constexpr std::size_t kLongest = 12;  // of what stands between & and ;, both included
+    constexpr std::size_t kLongest = 12;  // longest reference, with & and ;
     std::string plain;
     while (!text.empty()) {
         const std::size_t end =
@@ -160,7 +159,7 @@ std::optional<T> numberOf(const Attributes& attributes, const char* name) {
     return number;
 }
 
-// Planes of which a block says where they are.
+// Planes that one TiffData block places.
 struct Block {
     std::optional<std::int64_t> page, count;
     std::array<std::int64_t, 3> first{};  // z, c, t
@@ -170,10 +169,10 @@ struct Block {
 struct Pixels {
     Attributes attributes;
     std::vector<Block> blocks;
-    std::int64_t samples = 0;  // of a channel; 0: not said
+    std::int64_t samples = 0;  // per channel; 0: unknown
 };
 
-// Elements come as they stand in the text: what a picture has behind it.
+// Tags come in document order: a picture's parts follow its own tag.
 std::vector<Pixels> pixelsIn(const std::string& text) {
     std::vector<Pixels> all;
     XmlTags tags(text);
@@ -201,7 +200,7 @@ std::vector<Pixels> pixelsIn(const std::string& text) {
     return all;
 }
 
-// The name that planes have which are in a file: its own, or that it had.
+// Returns the name that blocks use for this file: its current or a former one.
 std::string nameIn(const std::vector<Pixels>& all, const std::string& name) {
     std::set<std::string> names;
     for (const Pixels& pixels : all)
@@ -210,7 +209,7 @@ std::string nameIn(const std::vector<Pixels>& all, const std::string& name) {
     return names.size() == 1 ? *names.begin() : name;
 }
 
-// Which of z, c and t counts fastest, next and last.
+// Returns which of z, c and t is fastest, next and slowest.
 std::array<std::size_t, 3> orderOf(const Attributes& attributes) {
     const std::string text = textOf(attributes, "DimensionOrder", "XYZCT");
     const std::string letters = "ZCT";
@@ -243,16 +242,15 @@ void setSpacing(const Attributes& attributes, OmePicture& picture) {
     }
 }
 
-// Planes in the order in which pages hold them. Any of them is named by the last block that names
-// it; blocks are taken from the last one on and step over planes that are named, so that text that
-// repeats itself costs no more than its length and the number of planes.
+// Planes in page order. The last block that names a plane counts. Blocks are taken backwards and
+// skip named planes, so repetitive text costs time linear in its length and the number of planes.
 class NamedPlanes {
   public:
     explicit NamedPlanes(std::size_t planes) : next_(planes + 1) {
         std::iota(next_.begin(), next_.end(), std::size_t{0});
     }
 
-    // @return the first plane from this one on that nobody has named, or the number of planes
+    // @return the first unnamed plane from `plane` on, or the number of planes
     std::size_t firstUnnamed(std::size_t plane) {
         std::size_t first = plane;
         while (next_[first] != first) first = next_[first];
@@ -265,12 +263,12 @@ class NamedPlanes {
     std::vector<std::size_t> next_;
 };
 
-// @param own  the name of planes that are in the file
+// @param own  blocks' name for this file
 void setPages(const Pixels& pixels, const std::string& own, OmePicture& picture) {
     const std::array<std::int64_t, 3> sizes{picture.slices, picture.channels, picture.times};
     const std::array<std::int64_t, 3> strides{1, sizes[0], sizes[0] * sizes[1]};
     const std::array<std::size_t, 3> order = orderOf(pixels.attributes);
-    constexpr std::int64_t kFarthest = std::int64_t{1} << 62;  // that sums can pass without harm
+    constexpr std::int64_t kFarthest = std::int64_t{1} << 62;  // sums stay below 2^63
     const std::size_t planes = picture.pages.size();
     NamedPlanes named(planes);
     const std::vector<Block> all(1);
@@ -313,7 +311,7 @@ void setPages(const Pixels& pixels, const std::string& own, OmePicture& picture)
 std::vector<OmePicture> readOme(const std::filesystem::path& file, const std::string& text,
                                 int samples) {
     constexpr std::int64_t kMostPlanes = std::int64_t{1} << 22;
-    constexpr double kPerByte = 20;  // of text: what tags and pictures of the shortest kind take
+    constexpr double kPerByte = 20;  // bytes of memory per byte of text, for the shortest tags
     const std::string where = file.string();
     requireClaimedMemory(where, kPerByte * double(text.size()));
     const std::vector<Pixels> all = pixelsIn(text);

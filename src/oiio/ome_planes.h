@@ -9,23 +9,18 @@
 
 namespace deltasplat {
 
-/// A picture of up to five axes, as OME-XML describes it.
+/// A picture of up to five axes, from OME-XML.
 struct OmePicture {
     std::int64_t slices = 1, channels = 1, times = 1;
-    /// Of each plane its page, slices counting fastest, then channels, then times; -1: none is
-    /// known.
-    std::vector<std::int64_t> pages;
-    /// Lengths of a pixel and between slices, in lengthUnit; 0: not said.
-    glm::dvec3 spacing{0.0};
-    std::string lengthUnit;  ///< as Volume::lengthUnit
-    /// The name of another file in which planes lie; empty: all are here.
-    std::string otherFile;
+    std::vector<std::int64_t> pages;  ///< of planes: slices fastest, channels, times; -1: unknown
+    glm::dvec3 spacing{0.0};          ///< of pixels and slices, in lengthUnit; 0: unknown
+    std::string lengthUnit;           ///< as Volume::lengthUnit
+    std::string otherFile;            ///< that holds planes; empty: all are in this file
 };
 
-/// Returns the pictures that OME-XML describes; none for another text.
-/// @param file     that has the text
-/// @param samples  values of each pixel of a page, which are channels to OME
-/// @throw Error(kInput) for sizes that cannot be meant
+/// Returns the pictures in OME-XML; none for other text.
+/// @param samples  values per pixel of a page; OME counts them as channels
+/// @throw Error(kInput) for impossible sizes
 std::vector<OmePicture> readOme(const std::filesystem::path& file, const std::string& text,
                                 int samples);
 

@@ -62,7 +62,7 @@ void warnOfLosses(const std::filesystem::path& file, const ImageSpec& spec,
         listener.warn(file.string() + ": whole numbers are read as sRGB, which ends at 1: " +
                       "what is brighter, as the sun is, has lost its light");
     }
-    // OpenEXR's: x and y of red, green, blue and white.
+    // OpenEXR's order: x and y of red, green, blue and white.
     constexpr std::array<float, 8> kRec709{0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.3127f, 0.329f};
     std::array<float, 8> primaries = kRec709;
     spec.getattribute("chromaticities", TypeDesc(TypeDesc::FLOAT, 8), primaries.data());
@@ -73,7 +73,7 @@ void warnOfLosses(const std::filesystem::path& file, const ImageSpec& spec,
     }
 }
 
-// Greys become colours.
+// Grey becomes three equal channels.
 std::vector<float> readColors(const std::filesystem::path& file, ImageFile& image) {
     const ImageSpec& spec = image.spec();
     const std::size_t pixels = std::size_t(spec.width) * std::size_t(spec.height);
@@ -88,7 +88,7 @@ std::vector<float> readColors(const std::filesystem::path& file, ImageFile& imag
     return rgb;
 }
 
-// Decodes whole numbers, takes what is below 0 for 0, and refuses what has no meaning.
+// Decodes integers from sRGB, sets negative values to 0, and refuses invalid pictures.
 void mendValues(const std::filesystem::path& file, bool whole, std::vector<float>& values,
                 const Listener& listener) {
     std::atomic<std::size_t> odd = 0, negative = 0;

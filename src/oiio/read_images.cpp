@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Multi-page TIFF and stacks of images, by OpenImageIO: one page or file is one slice, row 0 is y
-// 0.
+// Multi-page TIFF and image stacks, read with OpenImageIO: a slice per page or file, row 0 is y 0.
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -37,7 +36,7 @@ using OIIO::TypeDesc;
 
 struct ImageType {
     RawType raw;
-    TypeDesc::BASETYPE oiio;  // what OpenImageIO is asked for
+    TypeDesc::BASETYPE oiio;  // requested from OpenImageIO
 };
 
 std::optional<ImageType> imageType(const TypeDesc& type) {
@@ -64,17 +63,16 @@ std::optional<ImageType> imageType(const TypeDesc& type) {
     }
 }
 
-// What all slices have to have in common, and where they are.
 struct Stack {
     std::vector<std::filesystem::path> files;
-    ImagePages pages;   // of the only file
-    TiffVolume volume;  // of the pages of the only file, or what the first of several says
-    Samples samplesRead = Samples::kStored;   // of a palette
-    std::shared_ptr<const FileBytes> behind;  // the only file, if planes lie behind its only page
+    ImagePages pages;   // of a single file
+    TiffVolume volume;  // pages of a single file, or metadata of the first of several
+    Samples samplesRead = Samples::kStored;   // interpretation of a palette
+    std::shared_ptr<const FileBytes> behind;  // the file, if planes follow its only page
     int width = 0;
     int height = 0;
-    int channels = 1;  // that are read: 1, or 3 which become one
-    int samples = 1;   // that a pixel has
+    int channels = 1;  // to read: 1, or 3 that are mixed to one
+    int samples = 1;   // per pixel
     TypeDesc stored;
     ImageType type{RawType::kUint8, TypeDesc::UINT8};
 
@@ -144,8 +142,8 @@ void mixColors(const Stack& stack, const std::byte* colors, std::byte* to) {
     }
 }
 
-// The only plane of a file of a stack.
-// @throw Error(kInput) if there are several
+// Returns the only plane of a file in a stack.
+// @throw Error(kInput) if the file has several
 std::int64_t onlyPage(const std::filesystem::path& file, const ImagePages& pages,
                       const Listener& listener, TiffVolume& volume) {
     std::size_t count = std::size_t(pages.count());
@@ -157,13 +155,11 @@ std::int64_t onlyPage(const std::filesystem::path& file, const ImagePages& pages
     refuseFile(file, std::to_string(count) + " pages", "one in each file of a stack");
 }
 
-// Turns the bytes of numbers round.
 void swapBytes(std::size_t width, std::span<std::byte> bytes) {
     for (std::size_t at = 0; at + width <= bytes.size(); at += width)
         std::reverse(&bytes[at], &bytes[at] + width);
 }
 
-// Reads slices one after the other.
 class SliceReader {
   public:
     explicit SliceReader(const Stack& stack) : stack_(stack) {
@@ -194,7 +190,7 @@ class SliceReader {
         image.read(stack_.channels, stack_.type.oiio, to);
     }
 
-    // A plane of which no page tells.
+    // Reads a plane without a page of its own.
     void readBehind(int slice, std::byte* to) {
         const TiffPage& page = stack_.pages.tiff()->pages[0];
         stored_.resize(std::size_t(page.pixelBytes));
@@ -234,7 +230,7 @@ void readLayers(const Stack& stack, const std::string& where, const DenseSource:
     }
 }
 
-// Which pages of the only file are slices.
+// Returns a single file's pages that are slices.
 TiffVolume planesOf(const std::filesystem::path& file, const ImagePages& pages,
                     const ReadOptions& options, const Listener& listener) {
     if (pages.tiff()) return findTiffVolume(file, *pages.tiff(), true, options.volume, listener);
@@ -244,7 +240,7 @@ TiffVolume planesOf(const std::filesystem::path& file, const ImagePages& pages,
     return volume;
 }
 
-// Whether a palette's numbers are read.
+// Whether to read palette indices instead of colours.
 bool readsNumbers(const std::filesystem::path& file, bool isPalette, const TiffVolume& volume,
                   const ReadOptions& options, const Listener& listener) {
     if (!isPalette || options.paletteNumbers) return isPalette && *options.paletteNumbers;
@@ -254,7 +250,7 @@ bool readsNumbers(const std::filesystem::path& file, bool isPalette, const TiffV
     return volume.isPaletteShown;
 }
 
-// Holds what the planes behind the only page are against what that one says.
+// Checks that planes after the only page have the layout that the page declares.
 void requirePlanes(const Stack& stack, const ImageSpec& spec) {
     const TiffPage& page = stack.pages.tiff()->pages[0];
     const double bytes = double(stack.pixels()) * spec.nchannels * double(spec.format.size());
@@ -263,7 +259,7 @@ void requirePlanes(const Stack& stack, const ImageSpec& spec) {
                "whole bytes, of no palette");
 }
 
-// Looks at every header before anything is read.
+// Reads every header before any pixels.
 Stack surveyStack(const std::vector<std::filesystem::path>& files, const ReadOptions& options,
                   const Listener& listener) {
     Stack stack;
@@ -324,13 +320,13 @@ Stack surveyStack(const std::vector<std::filesystem::path>& files, const ReadOpt
         requirePlanes(stack, first);
         stack.behind = std::make_shared<const FileBytes>(files[0]);
     }
-    // Numbers of a palette may come as greys of three channels.
+    // Palette indices may appear as three grey channels.
     if (stack.samplesRead != Samples::kNumbers)
         warnOfLosses(files.front(), first, isPalette, listener);
     return stack;
 }
 
-// The type of values that are whole numbers again once they are rescaled.
+// Returns a type that holds the rescaled values as integers, if any.
 std::optional<RawType> wholeType(RawType type, const Rescale& rescale) {
     switch (type) {
         case RawType::kUint8:

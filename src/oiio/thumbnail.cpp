@@ -25,7 +25,7 @@ namespace deltasplat {
 namespace {
 
 constexpr const char* kCompression = "jpeg:85";
-// Steps of a table of sRGB, in which the 256 of 8 bits are.
+// Steps of a table of sRGB that includes all 8-bit levels.
 constexpr int kSteps = 255 * 16;
 
 float linearOf(float level) {
@@ -38,7 +38,7 @@ float linearOf(float level) {
     return table[std::size_t(std::lround(std::clamp(level, 0.0F, 1.0F) * kSteps))];
 }
 
-// Premultiplied light of a pixel as a file has it: one, three or four channels.
+// Returns the premultiplied linear light of a pixel with one, three or four channels.
 std::array<float, 4> lightOf(const float* pixel, int channels, bool isLight) {
     std::array<float, 4> rgba{};
     for (int c = 0; c < 3; ++c) rgba[std::size_t(c)] = pixel[channels >= 3 ? c : 0];
@@ -49,7 +49,6 @@ std::array<float, 4> lightOf(const float* pixel, int channels, bool isLight) {
     return rgba;
 }
 
-// Adds rows of a file to the cells of a small picture.
 class Shrinker {
   public:
     Shrinker(const OIIO::ImageSpec& spec, int mostSide)
@@ -58,7 +57,7 @@ class Shrinker {
           step_((std::max(size_.x, size_.y) - 1) / mostSide + 1),
           image_((size_ - 1) / step_ + 1) {}
 
-    // @param y  of a row, from the first that the file holds on
+    // @param y  counted from the file's first row
     void add(int y, const float* row, int width, int channels, bool isLight) {
         const std::int64_t line = first_.y + y;
         if (line < 0 || line >= size_.y) return;
@@ -124,7 +123,7 @@ Image image_module::readThumbnail(const std::filesystem::path& file, int mostSid
     }
     const auto input = OIIO::ImageInput::open(file.string(), &asStored);
     Image image = input ? shrunk(*input, mostSide) : Image();
-    // What is not asked for is printed when the thread ends.
+    // OpenImageIO prints unread errors when the thread ends.
     if (input) (void)input->geterror();
     (void)OIIO::geterror();
     return image;
@@ -167,7 +166,7 @@ bool image_module::isWholeImage(const std::filesystem::path& file) {
     } catch (const std::exception&) {
         isWhole = false;
     }
-    // What is not asked for is printed when the thread ends.
+    // OpenImageIO prints unread errors when the thread ends.
     (void)OIIO::geterror();
     return isWhole;
 }

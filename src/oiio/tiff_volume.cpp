@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: what ImageJ's TiffEncoder and FileOpener write into and read of a description, its
-// hyperstacks' order (channels count fastest, then slices, then frames), and its Calibration.
+// Based on: ImageJ's TiffEncoder and FileOpener (format of descriptions), its Calibration, and its
+// hyperstack order (channels fastest, then slices, then frames).
 #include "oiio/tiff_volume.h"
 
 #include <algorithm>
@@ -32,11 +32,10 @@ std::optional<T> numberIn(const std::string& text) {
     return number;
 }
 
-// Which planes make the volumes of a file.
 struct Planes {
     std::int64_t slices = 1;
     std::int64_t volumes = 1;
-    std::string axes;  // what others than the first three are, for messages
+    std::string axes;  // further axes, for messages
     std::function<std::int64_t(std::int64_t slice, std::int64_t volume)> at;
 };
 
@@ -44,8 +43,8 @@ std::string axesText(std::int64_t channels, std::int64_t times) {
     return countText(channels, "channel") + ", " + countText(times, "time");
 }
 
-// What is a stack in one direction only is one volume, whatever the direction is.
-// @param at  of slice, channel, time
+// A stack along a single axis is one volume, even if the axis is channels or times.
+// @param at  maps slice, channel and time to a plane
 Planes planesOf(const std::string& where, std::int64_t slices, std::int64_t channels,
                 std::int64_t times,
                 const std::function<std::int64_t(std::int64_t, std::int64_t, std::int64_t)>& at,
@@ -62,7 +61,6 @@ Planes planesOf(const std::string& where, std::int64_t slices, std::int64_t chan
             [at, channels](auto i, auto n) { return at(i, n % channels, n / channels); }};
 }
 
-// Lines `name=value`.
 std::map<std::string, std::string> linesOf(const std::string& text) {
     std::map<std::string, std::string> lines;
     std::istringstream in(text);
@@ -82,7 +80,6 @@ class ImageJ {
 
     std::int64_t images() const { return count("images", 1); }
 
-    // Slices, channels and frames of all images.
     Planes planes(const Listener& listener) const {
         const std::int64_t channels = count("channels", 1), times = count("frames", 1);
         const bool isPlain = channels == 1 && times == 1;
@@ -122,7 +119,7 @@ class ImageJ {
         if (spacing != glm::dvec3(1) || !volume.lengthUnit.empty()) volume.spacing = spacing;
     }
 
-    // What values mean, if it is a straight line.
+    // Takes ImageJ's calibration of values if it is linear.
     void setRescale(TiffVolume& volume, const Listener& listener) const {
         constexpr int kStraight = 0, kNone = 20;
         const double said = number("cf").value_or(kStraight);
@@ -142,7 +139,7 @@ class ImageJ {
     }
 
   private:
-    // @return whether there is one: that of x, unless y and z have units of their own
+    // @return whether a common unit exists; the unit of x is used, and y and z are converted
     bool toOneUnit(glm::dvec3& spacing, const std::string& unit) const {
         constexpr std::array<const char*, 3> kNames{"unit", "yunit", "zunit"};
         for (std::size_t axis = 1; axis < kNames.size(); ++axis) {
@@ -173,21 +170,21 @@ class ImageJ {
     std::map<std::string, std::string> lines_;
 };
 
-// How many planes lie behind the only page's, itself included.
+// Returns the number of planes after the only page's pixels, its own included.
 std::int64_t planesBehind(const TiffPages& tiff) {
     const TiffPage& page = tiff.pages[0];
     if (tiff.pages.size() != 1 || page.pixelBytes == 0) return 1;
     return std::int64_t(page.roomBytes / page.pixelBytes);
 }
 
-// Takes the planes of a volume, by their numbers, once they are known to be there.
+// Picks a volume's planes after checking that they exist.
 class PlaneTaker {
   public:
     PlaneTaker(const Path& file, const TiffPages& tiff, const std::optional<std::int64_t>& chosen)
         : file_(file), tiff_(tiff), chosen_(chosen) {}
 
-    // @param pages  that may be planes, if these are not behind the only one
-    // @return whether all that are said to be there are, or may be; else nothing is taken
+    // @param pages  pages that may be planes, unless planes follow the only page
+    // @return false, with nothing taken, if the description contradicts the file
     bool take(const Planes& planes, std::int64_t all, const std::string& program,
               const std::vector<std::int64_t>& pages, const Listener& listener,
               TiffVolume& volume) const {
@@ -197,7 +194,7 @@ class PlaneTaker {
         if (volume.areBehind ? behind < all : count != all) {
             const std::string got = countText(volume.areBehind ? behind : count, "page");
             const std::string said = countText(all, "image") + ", as " + program + " says";
-            // Who takes pages out of a file leaves the text as it was.
+            // Programs that remove pages leave the description unchanged.
             if (volume.areBehind || planes.volumes > 1) refuseFile(file_, got, said);
             listener.warn(file_.string() + ": has " + got + " and not " + said);
             return false;
@@ -217,7 +214,7 @@ class PlaneTaker {
     const std::optional<std::int64_t>& chosen_;
 };
 
-// Pages in their order, but those that are other pages made small.
+// Returns the pages in order, without reduced copies.
 std::vector<std::int64_t> wholePages(const Path& file, const TiffPages& tiff,
                                      const Listener& listener) {
     std::vector<std::int64_t> pages;
@@ -235,7 +232,7 @@ std::vector<std::int64_t> wholePages(const Path& file, const TiffPages& tiff,
     return pages;
 }
 
-// The numbers of `{"shape": [2, 3, 64, 64]}`, which tifffile writes.
+// Parses tifffile's `{"shape": [2, 3, 64, 64]}`.
 std::vector<std::int64_t> shapeIn(const std::string& text) {
     std::vector<std::int64_t> shape;
     std::size_t at = text.find('[');
@@ -251,8 +248,8 @@ std::vector<std::int64_t> shapeIn(const std::string& text) {
     return shape;
 }
 
-// The last axes of an array are a page's; before them stands that of slices.
-// @return no slices if the text says nothing
+// The shape's last axes belong to a page; slices come before them.
+// @return no slices if there is no such description
 Planes planesOfShape(const TiffPages& tiff) {
     std::vector<std::int64_t> shape = shapeIn(tiff.description);
     const std::size_t ofPage = tiff.samples > 1 ? 3 : 2;
@@ -262,13 +259,13 @@ Planes planesOfShape(const TiffPages& tiff) {
         return images;
     };
     const auto held = double(std::max(std::int64_t(tiff.pages.size()), planesBehind(tiff)));
-    // A last axis of one sample is none of the page's two.
+    // A trailing axis of one sample is not one of the page's two axes.
     while (shape.size() > ofPage && shape.back() == 1 && imagesOf() > held) shape.pop_back();
     Planes planes;
     planes.slices = 0;
     if (shape.size() <= ofPage) return planes;
     shape.resize(shape.size() - ofPage);
-    // Axes of one element number nothing.
+    // Axes of length 1 number nothing.
     std::erase(shape, 1);
     if (shape.empty()) shape.push_back(1);
     planes.slices = shape.back();

@@ -14,29 +14,22 @@
 
 namespace deltasplat {
 
-/// What the program that wrote a TIFF says of its pages: ImageJ, Bio-Formats and others that write
-/// OME-XML, tifffile, MetaMorph.
+/// The volume that a TIFF's metadata describes: ImageJ's, OME-XML, tifffile's or MetaMorph's.
 struct TiffVolume {
-    /// Of each slice the number of its page.
-    std::vector<std::int64_t> planes;
-    /// Whether there is one page only, behind whose pixels those of the other slices lie.
-    bool areBehind = false;
-    std::int64_t volumes = 1;           ///< in the file, one of which it is
-    std::optional<glm::dvec3> spacing;  ///< of voxels; empty: nobody says it
+    std::vector<std::int64_t> planes;   ///< page of each slice
+    bool areBehind = false;             ///< the file has one page; other slices follow its pixels
+    std::int64_t volumes = 1;           ///< in the file; this is one of them
+    std::optional<glm::dvec3> spacing;  ///< of voxels; empty: unknown
     std::string lengthUnit;             ///< of the spacing, as Volume::lengthUnit
-    Rescale rescale;                    ///< of values
-    bool isPaletteShown = false;        ///< a palette is how values are shown, not what they are
+    Rescale rescale;
+    bool isPaletteShown = false;  ///< the palette is for display only, values are numbers
 };
 
-/// Finds the slices of a volume among the pages of a TIFF: all pages, in their order, if nobody
-/// says anything else. Pages that are thumbnails, smaller copies or masks of others are left out,
-/// which is said.
-/// @param isAlone  whether it is no file of a stack: descriptions of several files tell nothing of
-///                 one
-/// @param chosen   which of several volumes is wanted, from 0 on: channels count fastest, then
-///                 times, then pictures
-/// @throw Error(kInput) as chooseVolume; if pages are missing that are spoken of; if a volume's
-///        slices lie in other files
+/// Finds a volume's slices among a TIFF's pages: all pages in order unless metadata says otherwise.
+/// Skips thumbnails, smaller copies and masks, with a warning.
+/// @param isAlone  whether the file is not part of a stack, where only ImageJ's metadata counts
+/// @param chosen   the wanted volume, from 0 on: channels fastest, then times, then pictures
+/// @throw Error(kInput) as chooseVolume; if named pages are missing, or slices lie in other files
 TiffVolume findTiffVolume(const std::filesystem::path& file, const TiffPages& tiff, bool isAlone,
                           const std::optional<std::int64_t>& chosen, const Listener& listener);
 

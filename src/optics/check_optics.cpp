@@ -90,7 +90,7 @@ void checkSurface(const Optics& optics) {
     for (int i = 0; i < 3; ++i) checkLight("`surface.color`", optics.surface->color[i]);
 }
 
-// What fog cannot be beside its light, other parts or colours of grids.
+// Options that cannot be combined with scattering, other parts or colour grids.
 void requireFog(const Optics& optics, const std::string& option) {
     const char* besides = optics.shading                    ? "`shading` besides"
                           : optics.surface                  ? "`surface` besides"
@@ -176,8 +176,8 @@ void checkMedium(const Optics& optics) {
     requireFog(optics, "`colorGrids`");
     for (const auto& grid : *optics.colorGrids) {
         requireThat(grid != nullptr, "`colorGrids`", "one without a volume", "three volumes");
-        requireThat(grid->empty() || grid->valueMin >= 0, "`colorGrids`",
-                    "a colour of " + numberText(grid->valueMin), "colours >= 0");
+        requireThat(grid->empty() || grid->valueMin() >= 0, "`colorGrids`",
+                    "a colour of " + numberText(grid->valueMin()), "colours >= 0");
     }
 }
 

@@ -5,8 +5,7 @@
 
 namespace deltasplat {
 
-/// @throw Error(kUsage) naming what is out of range: unit distance, extinction, range, or points of
-///        the transfer function (none, not finite, not in order)
+/// @throw Error(kUsage) naming the option that is out of range
 void checkOptics(const Optics& optics);
 
 }  // namespace deltasplat

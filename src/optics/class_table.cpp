@@ -36,14 +36,14 @@ double extinctionOf(double opacity) {
     return -portable::log1p(-opacity);
 }
 
-// The share of light taken away on the way from one slice to the next.
+// Share of light absorbed between two slices.
 double alphaOf(double extinction, double unitDistancesPerSlice) {
     if (extinction <= 0 || unitDistancesPerSlice <= 0) return 0;
     if (std::isinf(extinction)) return 1;
     return -portable::expm1(-extinction * unitDistancesPerSlice);
 }
 
-// Codes and classes are gone over in runs: of floats there may be tens of thousands.
+// Work on codes and classes is cut into runs; float volumes have tens of thousands of codes.
 constexpr std::size_t kRun = 1024;
 
 std::size_t runsOf(std::size_t count) {
@@ -57,20 +57,18 @@ void forRuns(std::size_t count, const Body& body) {
                 [&](std::size_t run) { body(run, run * kRun, std::min((run + 1) * kRun, count)); });
 }
 
-// What a code looks like; those of codes that cannot be seen are left out.
 struct CodeLook {
     Code code;
     Look look;
 };
 
-// What is inside of a surface.
 std::vector<CodeLook> lookUpSurface(const Volume& volume, const Surface& surface) {
     const Look inside{std::numeric_limits<double>::infinity(), surface.color};
     const bool isBelow = isLevelSet(volume);
     std::vector<CodeLook> codes;
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-        if (volume.histogram[code] == 0) continue;
-        const double value = volume.codeBook.valueOf(Code(code));
+    for (std::size_t code = 0; code < volume.histogram().size(); ++code) {
+        if (volume.histogram()[code] == 0) continue;
+        const double value = volume.codeBook().valueOf(Code(code));
         const bool isInside = isBelow ? value <= surface.isovalue : value >= surface.isovalue;
         if (isInside) codes.push_back({Code(code), inside});
     }
@@ -84,12 +82,12 @@ std::vector<CodeLook> lookUp(const Volume& volume, const Optics& optics) {
     const FunctionPlace placeOf(function, volume, optics.range);
     const double unitDistance = unitDistanceOf(volume, optics);
     std::vector<CodeLook> codes;
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-        if (volume.histogram[code] != 0) codes.push_back({Code(code), {}});
+    for (std::size_t code = 0; code < volume.histogram().size(); ++code) {
+        if (volume.histogram()[code] != 0) codes.push_back({Code(code), {}});
     }
     forRuns(codes.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const double value = volume.codeBook.valueOf(codes[i].code);
+            const double value = volume.codeBook().valueOf(codes[i].code);
             const double x = placeOf(value);
             const double extinction =
                 optics.densityScale ? std::max(value, 0.0) * *optics.densityScale * unitDistance
@@ -101,14 +99,13 @@ std::vector<CodeLook> lookUp(const Volume& volume, const Optics& optics) {
     return codes;
 }
 
-// A look's light for one step, before it is rounded.
+// A look's light for one step, before rounding.
 struct StepLight {
     double alpha;
     glm::dvec3 color;  // not multiplied by alpha
 };
 using StepLights = UnclearedVector<StepLight>;
 
-// Of an index, what it stands for looks like.
 template <typename LookOf>
 StepLights lightOf(std::size_t count, const LookOf& lookOf, double unitDistances) {
     StepLights lights(count);
@@ -119,17 +116,17 @@ StepLights lightOf(std::size_t count, const LookOf& lookOf, double unitDistances
     return lights;
 }
 
-// What is seen of one voxel behind another.
+// Light of one voxel behind another.
 StepLight behind(const StepLight& front, const StepLight& back) {
     const double rest = (1 - front.alpha) * back.alpha;
     const double alpha = front.alpha + rest;
-    // Of one colour it stays what it is.
+    // Equal colours stay exactly equal.
     if (!(rest > 0) || front.color == back.color) return {alpha, front.color};
     if (!(front.alpha > 0)) return {alpha, back.color};
     return {alpha, (front.alpha * front.color + rest * back.color) / alpha};
 }
 
-// Of all pairs, as ClassTable::pairs says.
+// All pairs, in the order of ClassTable::pairs.
 StepLights lightOfPairs(const StepLights& lights, SeenThrough seenThrough) {
     StepLights pairs;
     pairs.reserve(lights.size() * lights.size());
@@ -140,7 +137,7 @@ StepLights lightOfPairs(const StepLights& lights, SeenThrough seenThrough) {
     return pairs;
 }
 
-// Rounds the colours of all visible codes with one scale a channel.
+// Rounds the colours of all visible codes with one scale per channel.
 class ColorRounder {
   public:
     explicit ColorRounder(const StepLights& lights) {
@@ -154,7 +151,7 @@ class ColorRounder {
         for (const Seen& run : runs) all.add(run);
         oneColor_ = all.first && all.oneColor;
         largest_ = all.largest;
-        // What is too small for a scale is nothing.
+        // A scale that underflows makes its channel 0.
         scale_ = largest_ / double(ClassTable::kMax);
     }
 
@@ -167,13 +164,13 @@ class ColorRounder {
             return scale_[c] == 0 ? 0 : light[c] / largest_[c] * ClassTable::kMax;
         };
         glm::dvec4 exact(unitsOf(3));
-        // Of one colour, all channels are the opacity: equal, however division rounds.
+        // With one colour, every channel equals the opacity, however division rounds.
         for (int c = 0; c < 3; ++c) {
             if (!oneColor_ || scale_[c] == 0) exact[c] = unitsOf(c);
         }
         const ColorDigits digits = digitsOf(exact);
         const auto isClear = [](const ClassTable::Color& color) { return color[3] == 0; };
-        // What lets all light through shows nothing.
+        // A look that lets all light through shows nothing.
         return std::all_of(digits.begin(), digits.end(), isClear) ? ColorDigits{} : digits;
     }
 
@@ -182,7 +179,7 @@ class ColorRounder {
         return {one.alpha * one.color, one.alpha};
     }
 
-    // What is not clear, of some lights.
+    // Summary of the lights that are not clear.
     struct Seen {
         const StepLight* first = nullptr;
         bool oneColor = true;
@@ -208,7 +205,7 @@ class ColorRounder {
     bool oneColor_;
 };
 
-// Lights in digits, in their order, and which digits any has.
+// Lights in digits, in the order of the input, and the union of the used digits.
 struct RoundedLights {
     UnclearedVector<ColorDigits> digits;
     unsigned used = 0;
@@ -229,8 +226,7 @@ RoundedLights roundColors(const StepLights& lights, const ColorRounder& rounder)
     return rounded;
 }
 
-// Whether looks of codes in order become ever more or ever less opaque, but for those that are as
-// the one before: then there are no others that are equal.
+// Whether opacity rises or falls strictly between different looks, so equal looks are neighbours.
 bool areInOrder(const std::vector<CodeLook>& codes) {
     bool rising = true;
     bool falling = true;
@@ -244,11 +240,11 @@ bool areInOrder(const std::vector<CodeLook>& codes) {
     return rising || falling;
 }
 
-// Gives equal looks equal numbers, in the order in which they come, beginning with 1. If need be by
-// an open hash table at most half full: several times as fast as sorting.
+// Numbers different looks from 1 on, in order of first appearance. Unless looks are in order, uses
+// an open hash table, at most half full: several times as fast as sorting.
 class LookNumbers {
   public:
-    // @param hasClear  whether kClearClass is among them
+    // @param hasClear  whether kClearClass is among the numbers
     LookNumbers(const std::vector<CodeLook>& codes, bool hasClear)
         : inOrder_(areInOrder(codes)), looks_(hasClear ? 2 : 1) {
         looks_.reserve(codes.size() + looks_.size());
@@ -267,7 +263,7 @@ class LookNumbers {
         return numberAt_[place];
     }
 
-    // [numbers]: the first is that of nothing.
+    // [numbers]: entry 0 is for invisible codes.
     std::vector<Look> take() { return std::move(looks_); }
 
   private:
@@ -279,7 +275,7 @@ class LookNumbers {
     static std::uint64_t hashOf(const Look& look) {
         constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // 2^64 / golden ratio (D. Knuth)
         std::uint64_t hash = 0;
-        // Adding 0 makes -0 the same as 0.
+        // Adding 0 turns -0 into 0.
         for (const double part : {look.extinction, look.color.x, look.color.y, look.color.z})
             hash = (hash ^ hash >> 32 ^ std::bit_cast<std::uint64_t>(part + 0.0)) * kSpread;
         return hash;
@@ -287,12 +283,12 @@ class LookNumbers {
 
     bool inOrder_;
     int placeBits_ = 0;
-    std::vector<Slot> numberAt_;  // 0 where nothing is
+    std::vector<Slot> numberAt_;  // 0: free
     std::vector<Look> looks_;
 };
 
-// Orders classes so that those with the same digits lie together: by the first that is not zero,
-// then by the last; what has none comes first. Returns the new number of each.
+// Orders classes by their first nonzero digit, then by the last, so that classes with the same
+// digits are neighbours; classes without digits come first. Returns each class' new number.
 std::vector<Slot> orderByDigits(std::vector<ColorDigits>& colors, std::vector<Look>& looks) {
     constexpr std::size_t kUses = 1 << std::tuple_size_v<ColorDigits>;
     std::array<unsigned, kUses> uses;
@@ -336,7 +332,7 @@ std::vector<Slot> orderByDigits(std::vector<ColorDigits>& colors, std::vector<Lo
     return numbers;
 }
 
-// Takes a digit of all classes. None are kept if all are zero, unless they must be.
+// Takes a digit of all classes; drops it if it is zero everywhere, unless `always`.
 void takeDigit(std::span<const ColorDigits> colors, std::size_t i, bool always,
                ClassTable::Digit& digit) {
     digit.colors.resize(colors.size());
@@ -351,7 +347,6 @@ void takeDigits(std::span<const ColorDigits> colors, ClassTable& table) {
     });
 }
 
-// How many planes digits need.
 std::size_t planesOf(unsigned used) {
     return used < 4 ? 1 : 2;
 }
@@ -365,7 +360,6 @@ void numberByLook(const std::vector<CodeLook>& visible, std::span<const ColorDig
     std::vector<ColorDigits> colors(hasClear ? 2 : 1);
     colors.reserve(visible.size() + colors.size());
     for (std::size_t i = 0; i < visible.size(); ++i) {
-        // What lets all light through shows nothing.
         if (usedDigits(digits[i]) == 0) continue;
         const Slot number = numbers.numberOf(visible[i].look);
         classOfSlot[visible[i].code + 1] = number;
@@ -463,7 +457,7 @@ double largestAlpha(const Volume& volume, const Optics& optics) {
     for (const TransferFunction::OpacityPoint& point : optics.transferFunction.opacities)
         opacity = std::max(opacity, point.opacity);
     const double extinction = optics.densityScale
-                                  ? volume.valueMax * *optics.densityScale * unitDistance
+                                  ? volume.valueMax() * *optics.densityScale * unitDistance
                                   : extinctionOf(opacity);
     return alphaOf(extinction, optics.extinctionScale * (smallestSize(volume) / unitDistance));
 }

@@ -26,14 +26,13 @@ glm::dvec3 eachOf(const glm::dvec3& v, const Function& function) {
     return {function(v.x), function(v.y), function(v.z)};
 }
 
-// Saturations below are grey, which has no hue of its own.
+// Colours of lower saturation count as grey, which has no hue of its own.
 constexpr double kGreySaturation = 0.05;
 
-// The hue that grey of a magnitude takes on beside a colour: it spins on, for magnitudes to change
-// evenly, and away from purple.
+// Hue of a grey beside a colour. Spins on, away from purple, so that magnitudes change evenly.
 double hueOfGreyBeside(const glm::dvec3& color, double magnitude) {
     if (color.x >= magnitude - 0.1) return color.z;
-    // Beside what is next to black it would spin many times around.
+    // Beside near-black colours the hue would spin many times around.
     constexpr double kBlackShare = 0.01;
     if (color.x < kBlackShare * magnitude) return color.z;
     const double spin = color.y * std::sqrt(magnitude * magnitude - color.x * color.x) /
@@ -41,14 +40,14 @@ double hueOfGreyBeside(const glm::dvec3& color, double magnitude) {
     return color.z > -0.3 * pi ? color.z + spin : color.z - spin;
 }
 
-// Both are saturated, and their hues are more than a third of half a turn apart.
+// Whether both colours are saturated, with hues more than 0.33 pi apart.
 bool needWhiteBetween(const glm::dvec3& a, const glm::dvec3& b) {
     double apart = std::abs(a.z - b.z);
     apart = std::min(apart, 2 * pi - apart);
     return a.y > kGreySaturation && b.y > kGreySaturation && apart > 0.33 * pi;
 }
 
-// What no screen shows comes back to what one does, as VTK has it.
+// Fits colours outside the screen's gamut into the gamut, as VTK does.
 glm::dvec3 shown(glm::dvec3 linear) {
     linear = eachOf(linear, [](double v) { return std::max(v, 0.0); });
     const double most = std::max({linear.r, linear.g, linear.b});
@@ -71,7 +70,7 @@ ColorCurve::ColorCurve(const TransferFunction& function)
       linearColors_(function.linearColors),
       first_(function.colors.front()),
       last_(function.colors.back()) {
-    // What is turned into another space and back may not be quite what it was.
+    // Converting one colour to another space and back would change its last bits.
     if (!hasOneColor(function)) {
         for (std::size_t i = 1; i < function.colors.size(); ++i)
             addStretch(function.colors[i - 1], function.colors[i]);
@@ -85,7 +84,7 @@ glm::dvec3 ColorCurve::at(double x) const {
     const auto next = std::upper_bound(
         stretches_.begin(), stretches_.end(), x,
         [](double value, const Stretch& stretch) { return value < stretch.begin; });
-    // Of several points at the same x the last one counts; the last of all ends the last stretch.
+    // Of several points at the same x the last one counts; the last point ends the last stretch.
     if (next == stretches_.begin() || x >= last_.x) return last_.rgb;
     const Stretch& here = next[-1];
     const double s = wayBetween(here.begin, here.end, x);
@@ -170,7 +169,7 @@ double square(double v) {
     return v * v;
 }
 
-// How much of full saturation a chroma has, as the formula's corrections for blue and grey have it.
+// The saturation of a chroma in the formula's corrections for blue and grey.
 double saturation(double chroma) {
     const double power = chroma * square(chroma * chroma * chroma);
     constexpr double k25 = 6103515625;  // 25^7
@@ -183,7 +182,7 @@ double hueOf(double a, double b) {
     return hue < 0 ? hue + 2 * pi : hue;
 }
 
-// In the middle of the shorter way around; grey has no hue.
+// Middle of the shorter way around; grey has no hue.
 double meanHue(double hue1, double hue2, bool grey) {
     if (grey) return hue1 + hue2;
     if (std::abs(hue1 - hue2) <= pi) return 0.5 * (hue1 + hue2);
@@ -295,7 +294,7 @@ std::vector<ColorPaths::Stop> ColorPaths::between(const glm::dvec3& from, const 
     }
     stops.push_back({to, 0});
 
-    // Its ends have moved to the colours themselves.
+    // The ends are now the colours themselves, so measure again.
     for (std::size_t i = 1; i < stops.size(); ++i) {
         stops[i].share =
             stops[i - 1].share + colorDifference(labOf(stops[i - 1].rgb), labOf(stops[i].rgb));

@@ -11,11 +11,10 @@
 
 namespace deltasplat {
 
-/// Returns whether all points have one colour, and so all values, to the last bit.
+/// Returns whether all points, and so all values, have one colour, to the last bit.
 bool hasOneColor(const TransferFunction& function);
 
-/// The colours of a transfer function, ready to be asked for many values: points are turned once
-/// into the space where colours are mixed.
+/// The colours of a transfer function, converted once into the space where colours are mixed.
 class ColorCurve {
   public:
     /// @param function  has at least one colour
@@ -25,7 +24,7 @@ class ColorCurve {
     glm::dvec3 at(double x) const;
 
   private:
-    // Colours from `begin` on, up to the next one's; mixed straight.
+    // A straight mix of colours from `begin` up to the next stretch.
     struct Stretch {
         double begin, end;
         glm::dvec3 from, to;
@@ -40,38 +39,36 @@ class ColorCurve {
     ColorSpace space_;
     bool linearColors_;
     TransferFunction::ColorPoint first_, last_;
-    std::vector<Stretch> stretches_;  // of some length each
+    std::vector<Stretch> stretches_;  // each of length > 0
 };
 
 /// Returns the CIEDE2000 difference of two colours of L*a*b*, with all weights 1.
 double colorDifference(const glm::dvec3& lab1, const glm::dvec3& lab2);
 
-/// Finds the shortest ways between colours, as CIEDE2000 measures them, over a grid of 17 levels a
-/// channel; a step goes to one of 26 neighbours.
+/// Finds the shortest ways between colours (CIEDE2000) on a grid of 17 levels per channel.
 class ColorPaths {
   public:
     struct Stop {
         glm::dvec3 rgb{0.0};  ///< sRGB
-        double share = 0;     ///< of the way that lies before it, 0..1
+        double share = 0;     ///< of the way that lies before this stop, 0..1
     };
 
     ColorPaths();
 
-    /// Returns the stops of the way, the two colours included: they take the places of the points
-    /// of the grid that are nearest to them.
+    /// Returns the stops of the way. The two colours replace the grid points nearest to them.
     /// @param from, to  sRGB, each 0..1
     std::vector<Stop> between(const glm::dvec3& from, const glm::dvec3& to);
 
   private:
     static constexpr int kLevels = 17;
     static constexpr int kPoints = kLevels * kLevels * kLevels;
-    static constexpr int kNeighbours = 27;  // the point itself among them
+    static constexpr int kNeighbours = 27;  // including the point itself
 
     double stepLength(int point, int neighbour, int other);
     std::vector<int> pointsBetween(int from, int to);
 
     std::vector<glm::dvec3> lab_;  // [kPoints]
-    std::vector<double> steps_;    // [kPoints][kNeighbours], less than 0 if not yet asked for
+    std::vector<double> steps_;    // [kPoints][kNeighbours], below 0 until computed
 };
 
 }  // namespace deltasplat

@@ -16,7 +16,7 @@ namespace {
 constexpr double kFiner = double(1 << ClassTable::kPlaneBits);
 static_assert(kLeastUnits == kLeastOfPlane / kFiner);
 
-// As std::round(), without a call: of what is not negative and less than 2^53.
+// As std::round() for x in [0, 2^53), without a call.
 std::int64_t rounded(double x) {
     const auto cut = std::int64_t(x);
     return cut + (x - double(cut) >= 0.5 ? 1 : 0);
@@ -26,18 +26,17 @@ double nearest(double units) {
     return double(std::min(rounded(units), std::int64_t{ClassTable::kMax}));
 }
 
-// The share of itself that rounding to one digit adds.
+// The relative error of rounding to one digit.
 double errorOf(double units) {
     return (nearest(units) - units) / std::max(units, kLeastUnits);
 }
 
-// Of a fog, however deep, alpha is off by no more than one voxel's, and colour by no more than one
-// voxel's colour (thin fog) or its quotient by alpha (dense fog).
+// Fog of any depth then errs by at most a voxel in alpha and colour (thin) or their ratio (dense).
 bool oneDigitIsEnough(const glm::dvec4& units) {
     const double alpha = errorOf(units.a);
     if (std::abs(alpha) > kColorShare) return false;
     for (int c = 0; c < 3; ++c) {
-        if (units[c] == units.a) continue;  // and errs as much
+        if (units[c] == units.a) continue;  // same error as alpha
         const double color = errorOf(units[c]);
         const bool seen = units[c] >= kLeastUnits;
         if (std::abs(color) > kColorShare) return false;
@@ -90,7 +89,7 @@ unsigned usedDigits(const ColorDigits& digits) {
 
 namespace {
 
-// Returns what each class is called by the others, or nothing if they are not one to one.
+// Returns the number in `others` of each class; nothing if the two tables are not one to one.
 std::optional<std::vector<Slot>> othersNumbers(std::span<const Slot> others,
                                                const ClassTable& table) {
     constexpr Slot kNone = ClassTable::kMaxClasses;
@@ -111,7 +110,6 @@ std::optional<std::vector<Slot>> othersNumbers(std::span<const Slot> others,
         }
         if (number != other || from != own) return {};
     }
-    // A class without codes.
     if (std::find(numbers.begin(), numbers.end(), kNone) != numbers.end()) return {};
     return numbers;
 }

@@ -14,30 +14,30 @@
 
 namespace deltasplat {
 
-/// All digits of a colour that there may be: of each plane the high one, then the low one.
+/// All possible digits of a colour: per plane the high digit, then the low digit.
 using ColorDigits = std::array<ClassTable::Color, 2 * ClassTable::kMaxPlanes>;
 
-/// How far rounding may be off, as a share of what is rounded, and of colour by opacity.
+/// The largest relative error of rounding, of each channel and of colour divided by opacity.
 inline constexpr double kColorShare = 0x1p-8;
-/// What is less belongs on the second plane.
+/// Smaller channels go to the second plane.
 inline constexpr double kLeastOfPlane = double(ClassTable::kMax) / (1 << ClassTable::kPlaneBits);
-/// Below 2^-40 of the largest, what is off by no more than at 2^-40 is right.
+/// Channels below 2^-40 of the largest may be off by as much as a channel of 2^-40 may.
 inline constexpr double kLeastUnits = ClassTable::kMax * 0x1p-40;
 
-/// Writes a premultiplied colour in digits, as ClassTable says.
+/// Splits a premultiplied colour into digits (see ClassTable).
 /// @param units  0..ClassTable::kMax in each channel: units of the first plane
 ColorDigits digitsOf(const glm::dvec4& units);
 
-/// Returns what digits stand for, in units of the first plane.
+/// Returns the colour of digits, in units of the first plane.
 glm::dvec4 unitsOf(const ColorDigits& digits);
 
 /// Returns which digits are not zero: bit i for digits[i].
 unsigned usedDigits(const ColorDigits& digits);
 
-/// Tells at which place of a transfer function a data value lies.
+/// Maps a data value to its place on the transfer function's axis.
 class FunctionPlace {
   public:
-    /// @param range  of a normalized one; empty: defaultRange of the volume
+    /// @param range  for a normalized function; empty: defaultRange of the volume
     FunctionPlace(const TransferFunction& function, const Volume& volume,
                   const std::optional<glm::dvec2>& range)
         : isNormalized_(function.normalized),
@@ -53,9 +53,8 @@ class FunctionPlace {
     glm::dvec2 range_;
 };
 
-/// Returns the largest share of light that anything can take away on the way through the shortest
-/// side of a voxel, 0..1, by the transfer function alone: whatever values the volume has, and
-/// whichever side it is seen from.
+/// Returns an upper bound, 0..1, of the share of light that any voxel absorbs along its shortest
+/// side. The histogram does not matter, only the transfer function or `densityScale`.
 /// @throw as classify
 double largestAlpha(const Volume& volume, const Optics& optics);
 
@@ -64,12 +63,10 @@ inline double unitDistanceOf(const Volume& volume, const Optics& optics) {
     return optics.unitDistance.value_or(smallestSize(volume));
 }
 
-/// Notes which classes a digit is not zero of.
-/// @return whether there are any
+/// Notes the range of classes whose digit is not zero; returns whether there are any.
 bool noteUse(ClassTable::Digit& digit);
 
-/// Gives classes the numbers that others have, if both tell the same codes apart.
-/// @return whether they do; if not, nothing is changed
+/// Gives the classes of `table` the numbers of `others`; false if codes are grouped differently.
 bool takeNumbers(const ClassTable& others, ClassTable& table);
 
 }  // namespace deltasplat

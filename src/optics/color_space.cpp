@@ -17,8 +17,7 @@ namespace deltasplat {
 
 namespace {
 
-// Columns: what red, green and blue have of X, Y and Z, in shares of white's, whose own are then
-// (1, 1, 1) to the last digit.
+// Columns: X, Y and Z of red, green and blue in shares of white's. Rows sum to exactly 1.
 const glm::dmat3 kShareOfWhite = [] {
     glm::dmat3 shares(0.4124, 0.2126, 0.0193, 0.3576, 0.7152, 0.1192, 0.1805, 0.0722, 0.9505);
     for (int row = 0; row < 3; ++row) {
@@ -29,7 +28,7 @@ const glm::dmat3 kShareOfWhite = [] {
 }();
 const glm::dmat3 kFromShareOfWhite = glm::inverse(kShareOfWhite);
 
-// What is darker is a straight line.
+// Darker shares are on a straight line.
 constexpr double kBend = 6.0 / 29;
 
 double lightness(double share) {
@@ -49,7 +48,7 @@ glm::dvec3 linearFromShareOfWhite(const glm::dvec3& share) {
 }
 
 glm::dvec3 labFromLinear(const glm::dvec3& rgb) {
-    // What is brighter would not come back as finite numbers.
+    // Brighter colours would not convert back to finite numbers.
     constexpr double kBrightest = 1e200;
     const glm::dvec3 share = kShareOfWhite * glm::min(rgb, glm::dvec3(kBrightest));
     const double x = lightness(share.x);
@@ -64,7 +63,7 @@ glm::dvec3 linearFromLab(const glm::dvec3& lab) {
 
 glm::dvec3 mshFromLab(const glm::dvec3& lab) {
     const double chroma = portable::hypot(lab.y, lab.z);
-    // Of grey, rounding makes any hue; and what is darker than any colour of 8 bits shows none.
+    // The hue of grey is only rounding error, and no 8-bit colour is this dark but black.
     constexpr double kGrey = 1e-3;
     constexpr double kBlack = 0.1;
     const double magnitude = portable::hypot(lab.x, chroma);
@@ -91,7 +90,7 @@ glm::dvec3 hsvFromRgb(const glm::dvec3& rgb) {
 glm::dvec3 rgbFromHsv(const glm::dvec3& hsv) {
     glm::dvec3 rgb;
     for (int c = 0; c < 3; ++c) {
-        // How far the hue is from the channel's, in sixths of a turn, both ways around.
+        // Distance of the hue from the channel's hue, in sixths of a turn, both ways around.
         const double away = std::abs(hsv.x * 6 - 2 * c);
         const double nearest = std::min(away, 6 - away);
         rgb[c] = hsv.z * (1 - hsv.y * std::clamp(nearest - 1, 0.0, 1.0));
@@ -102,7 +101,7 @@ glm::dvec3 rgbFromHsv(const glm::dvec3& hsv) {
 glm::dvec3 ColorFactor::largestOf(const ColorGrids& grids) {
     glm::dvec3 largest(1);
     for (int c = 0; c < 3; ++c)
-        largest[c] = std::clamp(grids[std::size_t(c)]->valueMax, 1.0, kBrightestColor);
+        largest[c] = std::clamp(grids[std::size_t(c)]->valueMax(), 1.0, kBrightestColor);
     return largest;
 }
 
@@ -128,13 +127,13 @@ WordFactors factorsOf(const OwnLook* looks) {
 }
 
 // Based on: M. Krystek, An Algorithm to Calculate Correlated Colour Temperature, 1985 (the locus of
-// black bodies as quotients of polynomials, within 1e-4 of it in u and v).
+// black bodies as quotients of polynomials, within 1e-4 in u and v).
 namespace {
 
 constexpr double kLowest = 1000;
 constexpr double kHighest = 15000;
 
-// Below Draper's point nothing is seen to glow, however it radiates; it fades out from there on.
+// Eyes see no glow below Draper's point, so the glow fades out from there on.
 constexpr double kDraperPoint = 798;
 
 glm::dvec3 linearFromXyz(const glm::dvec3& xyz) {
@@ -164,7 +163,7 @@ glm::dvec3 blackbodyColor(double kelvin) {
 
 glm::dvec3 blackbodyGlow(double kelvin) {
     if (!(kelvin > 0)) return glm::dvec3(0);
-    constexpr double kStefanBoltzmann = 5.670374e-8;  // watts a square metre and kelvin^4
+    constexpr double kStefanBoltzmann = 5.670374e-8;  // watts per square metre and kelvin^4
     const double share =
         std::clamp((kelvin - kDarkKelvin) / (kDraperPoint - kDarkKelvin), 0.0, 1.0);
     const double square = kelvin * kelvin * share;

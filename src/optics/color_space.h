@@ -13,13 +13,13 @@
 
 namespace deltasplat {
 
-/// Returns the scene-linear colour of CIE XYZ in shares of white's, so that (1, 1, 1) is white; it
-/// may lie beyond what the primaries can mix: below 0.
+/// Returns the scene-linear colour of CIE XYZ given in shares of white's, so that (1, 1, 1) is
+/// white. Channels of colours outside the gamut are below 0.
 glm::dvec3 linearFromShareOfWhite(const glm::dvec3& share);
 
 /// CIE L*a*b* of a scene-linear colour of sRGB's primaries; white, (1, 1, 1), is (100, 0, 0).
 glm::dvec3 labFromLinear(const glm::dvec3& rgb);
-/// Returns the scene-linear colour, which may lie beyond what the primaries can mix: below 0.
+/// Returns the scene-linear colour; channels of colours outside the gamut are below 0.
 glm::dvec3 linearFromLab(const glm::dvec3& lab);
 
 /// L*a*b* in polar form: magnitude, saturation (angle from grey) and hue, in radians.
@@ -30,45 +30,42 @@ glm::dvec3 labFromMsh(const glm::dvec3& msh);
 glm::dvec3 hsvFromRgb(const glm::dvec3& rgb);
 glm::dvec3 rgbFromHsv(const glm::dvec3& hsv);
 
-/// Colours of grids beyond this are taken for it, so that an outlier spoils no others.
+/// Colour grids are clamped to this, so that an outlier does not spoil other colours' precision.
 inline constexpr double kBrightestColor = 16;
 
-/// A colour that a volume's own is multiplied by, as looks keep it: square roots of shares of the
-/// largest, 11 bits of red and green and 10 of blue.
+/// A factor for a volume's own colour, as looks store it: square roots of shares of the largest
+/// factor, 11 bits each for red and green, 10 for blue.
 struct ColorFactor {
     static glm::dvec3 largestOf(const ColorGrids& grids);
 
-    /// @param share  of the largest of each channel; what is not within 0..1 is clamped
+    /// @param share  of the largest factor, per channel; clamped to 0..1
     static std::uint32_t packed(const glm::dvec3& share);
     static glm::vec3 unpacked(std::uint32_t bits);
 };
 
-/// Where looks keep a colour factor: behind the part's look.
+/// Returns the bits of a look's colour factor, which follow those of the part's look.
 inline std::uint32_t factorBits(const OwnLook& look) {
     return look.bits[1] | std::uint32_t(look.bits[2]) << 16;
 }
 
-/// Colour factors of 64 voxels as channels, RGB: shares of the largest.
+/// Colour factors of 64 voxels, by channel (RGB): shares of the largest factor.
 using WordFactors = std::array<std::array<float, 64>, 3>;
 
 /// @param looks  [64]
 WordFactors factorsOf(const OwnLook* looks);
 
-/// Returns the CIE 1931 chromaticity (x, y) of a black body. Below 1000 K it is that of 1000 K,
-/// above 15000 K that of 15000 K.
-/// @param kelvin  > 0
+/// Returns the CIE 1931 chromaticity (x, y) of a black body.
+/// @param kelvin  > 0; clamped to 1000..15000
 glm::dvec2 blackbodyChromaticity(double kelvin);
 
-/// Returns the colour of a black body: linear sRGB of luminance 1; what lies outside of sRGB is cut
-/// off, as deep reds are.
+/// Returns a black body's colour: linear sRGB of luminance 1, negative channels cut off.
 glm::dvec3 blackbodyColor(double kelvin);
 
-/// Nothing colder is seen to glow.
+/// Black bodies colder than this do not glow visibly.
 inline constexpr double kDarkKelvin = 500;
 
-/// Returns what a black body adds to a ray on a unit distance: sigma T^4 / pi, in megawatts a
-/// square metre and steradian, times its colour. From Draper's point, 798 K, down to kDarkKelvin it
-/// fades out, for it is not seen.
+/// Returns a black body's glow per unit distance: sigma T^4 / pi times its colour, in megawatts per
+/// square metre and steradian. Fades out from 798 K (Draper) to kDarkKelvin.
 glm::dvec3 blackbodyGlow(double kelvin);
 
 }  // namespace deltasplat

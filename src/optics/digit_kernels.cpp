@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rounding of colours, compiled once for each SIMD level. Each is rounded by itself, so that every
-// level gives the same bits.
+// Compiled once per SIMD level. Colours are rounded one by one, so all levels give the same bits.
 #include "optics/digit_kernels.h"
 
 #include "base/simd_targets.h"
@@ -9,7 +8,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "optics/digit_kernels.cpp"
 #include "hwy/foreach_target.h"
-// After foreach_target.h, as Highway asks.
+// Highway requires this after foreach_target.h.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -25,18 +24,17 @@ HWY_INLINE Units number(double x) {
     return hn::Set(UnitTag(), float(x));
 }
 
-// A channel in whole units, and the share of itself that this adds.
+// A channel in whole units and the relative error of rounding to them.
 struct Rounded {
     Units whole, error;
 };
 
-// Half-way goes up, as std::round has it.
+// Half-way rounds up, like std::round.
 HWY_INLINE Rounded rounded(Units units) {
     const auto whole = hn::Floor(hn::Add(units, number(0.5)));
     return {whole, hn::Div(hn::Sub(whole, units), hn::Max(units, number(kLeastUnits)))};
 }
 
-// Stores the channels of colours as integers of 16 bits.
 HWY_INLINE void store(const Integers (&channels)[4], ClassTable::Color* colors) {
     const hn::Rebind<std::int16_t, UnitTag> narrow;
     hn::StoreInterleaved4(hn::DemoteTo(narrow, channels[0]), hn::DemoteTo(narrow, channels[1]),
@@ -80,7 +78,7 @@ MoreDigits writeDigitsKernel(const WordUnits& units, ClassTable::Color* high,
             Integers lowDigits[4];
             auto isLess = hn::Lt(colors[3], number(kLeastOfPlane));
             for (std::size_t c = 0; c < 4; ++c) {
-                // Of floats, nothing lies behind the point that counts.
+                // The fraction does not count: small channels go to the second plane (more.planes).
                 const auto fine = hn::ConvertTo(
                     whole, hn::Floor(hn::Add(hn::Mul(colors[c], number(kLow)), number(0.5))));
                 const auto isMore = hn::RebindMask(whole, hn::Not(isEnough));

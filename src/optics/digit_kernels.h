@@ -8,16 +8,15 @@
 
 namespace deltasplat {
 
-/// Which of 64 voxels' colours are more than whole units: bit n for voxel n.
+/// Which of 64 voxels' colours need more than one digit: bit n for voxel n.
 struct MoreDigits {
-    std::uint64_t low = 0;     ///< they have a low digit
-    std::uint64_t planes = 0;  ///< of these, they may be on the second plane: see digitsOf
+    std::uint64_t low = 0;     ///< the colour has a low digit
+    std::uint64_t planes = 0;  ///< of these, the colour may be on the second plane (digitsOf)
 };
 
-/// Writes colours in digits of the first plane, as digitsOf (color_digits.h) does. The same bits at
-/// every SIMD level.
+/// Splits colours into digits of the first plane (digitsOf). The same bits at every SIMD level.
 /// @param high  [64]
-/// @param low   [64]: where there is no low digit, nothing of consequence
+/// @param low   [64]: undefined where there is no low digit
 MoreDigits writeDigits(const WordUnits& units, ClassTable::Color* high, ClassTable::Color* low);
 
 }  // namespace deltasplat

@@ -33,21 +33,21 @@ bool looksWithin(const glm::dvec4& held, const glm::dvec4& color, double toleran
     return true;
 }
 
-// What the codes of a volume stand for, [kSlotCount]; 0 for those that do not occur.
+// Values of a volume's codes, [kSlotCount]; 0 for codes that do not occur.
 std::vector<double> valuesOfSlots(const Volume& volume) {
     std::vector<double> values(kSlotCount);
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-        if (volume.histogram[code] != 0) values[code + 1] = volume.codeBook.valueOf(Code(code));
+    for (std::size_t code = 0; code < volume.histogram().size(); ++code) {
+        if (volume.histogram()[code] != 0) values[code + 1] = volume.codeBook().valueOf(Code(code));
     }
     return values;
 }
 
-// How far 1 - (1 - a)^w may be off, for any w of 0..1, if opacity a is off by t a: the steepest
-// slope times that. At a = 1 it has none.
+// Upper bound of the error of 1 - (1 - a)^w for any w in 0..1 if opacity a is off by t a: that
+// error times the steepest slope. At a = 1 there is no bound.
 double shorterStep(double mostOpaque, double t) {
     const double clear = 1 - (1 + t) * mostOpaque;
     if (!(clear > 0)) return std::numeric_limits<double>::infinity();
-    // Of w clear^(w - 1), the largest.
+    // The w that maximizes w clear^(w - 1).
     const double w = std::min(1.0, -1 / portable::log(clear));
     return t * mostOpaque * w * portable::pow(clear, w - 1);
 }
@@ -98,7 +98,7 @@ ErrorBound errorBound(const ClassTable& classes, const Tolerance& tolerance, Ste
             brightest = std::max(brightest, light);
         }
     }
-    // Rounding keeps the quotient of colour and opacity to 2^-8 (ClassTable).
+    // Rounding keeps colour / opacity within 2^-8 (ClassTable).
     if (ownBrightest) brightest = (1 + 0x1p-7) * *ownBrightest;
     const double t = tolerance.relative;
     const double colors = classes.oneColor                ? 0

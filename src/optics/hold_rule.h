@@ -12,44 +12,39 @@
 
 namespace deltasplat {
 
-/// Returns the rule by which a voxel may go on as what it was in the slice before
-/// (`PackOptions::holds`): with a relative tolerance t every classified channel of what is held is
-/// within t times that of the true one, with a tolerance of values the held value is within it of
-/// the true one. Empty if the tolerance is exact. Refers to `classes`.
-/// @throw Error(kUsage) if a tolerance is negative or not finite, or the relative one is not below
-/// 1
+/// Returns the rule by which a voxel may keep its slot from the slice before (PackOptions::holds):
+/// every classified channel is within `relative` times the true channel, and the value within
+/// `value` of the true value. Empty if the tolerance is exact. Refers to `classes`.
+/// @throw Error(kUsage) if `relative` is not within [0, 1) or `value` is negative or not finite
 std::function<bool(Slot held, Slot slot)> holdRule(const Volume& volume, const ClassTable& classes,
                                                    const Tolerance& tolerance);
 
-/// The same of voxels whose looks are colours of their own (own_colors.h), which the rule above
-/// takes to be white: whether one may go on as what it was. With a relative tolerance that holds in
-/// every channel, with a tolerance of values alone colours have to be the same. Copies the units.
+/// The same rule for voxels whose looks are colours (lookOfColor), which holdRule() takes for
+/// white. With a tolerance of values alone, colours must be equal. Copies the units.
 std::function<bool(const VoxelLook& held, const VoxelLook& look)> looksHoldRule(
     const VoxelUnits& units, const Tolerance& tolerance);
 
-/// Most that a picture under a tolerance may differ from the exact one, but for the rounding of
-/// floats, or kUnknownError.
+/// The largest difference from the exact picture, without rounding of floats; or kUnknownError.
 struct ErrorBound {
-    double color = 0;  ///< of each colour channel, premultiplied
+    double color = 0;  ///< per colour channel, premultiplied
     double alpha = 0;
 };
 
-/// What nothing is proved of.
+/// The bound where nothing is proved.
 inline constexpr ErrorBound kUnknownError = {std::numeric_limits<double>::infinity(),
                                              std::numeric_limits<double>::infinity()};
 
-/// Which ways through a slice colours stand for.
+/// Which lengths of steps through a slice colours are used for.
 enum class Steps {
-    kAsClassified,  ///< those that they are classified for
-    kLonger,        ///< these or longer ones, each pixel its own
-    kOneShorter     ///< the same, but for one slice in front, of which any share may be seen
+    kAsClassified,  ///< the length that they are classified for
+    kLonger,        ///< that length or a longer one, per pixel
+    kOneShorter     ///< as kLonger, but of one slice in front any share of the step may be seen
 };
 
-/// Returns the bound that docs/method.md proves for a layer on the base plane: alpha t, colour t
-/// times the brightest colour if all is of one colour, otherwise 2 t times it, or (t + 2 t / (1 -
-/// t)) times it where steps are longer. One that is shorter adds to it; what is opaque has no bound
-/// then.
-/// @param brightest  of colours that voxels have of their own, in any channel; the classes' are 1
+/// Returns the bound that docs/method.md proves for a layer on the base plane. Alpha: t. Colour, as
+/// a multiple of the brightest: t if all colours are equal, else 2 t, or t + 2 t / (1 - t) with
+/// longer steps. A shorter step adds to it; opaque voxels then have no bound.
+/// @param brightest  of voxels' own colours, in any channel; empty: the classes' brightest
 ErrorBound errorBound(const ClassTable& classes, const Tolerance& tolerance, Steps steps,
                       std::optional<double> brightest = {});
 

@@ -20,16 +20,16 @@
 namespace deltasplat {
 
 std::optional<double> anyBroken(const Volume& volume) {
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-        if (volume.histogram[code] == 0) continue;
-        const double value = volume.codeBook.valueOf(Code(code));
+    for (std::size_t code = 0; code < volume.histogram().size(); ++code) {
+        if (volume.histogram()[code] == 0) continue;
+        const double value = volume.codeBook().valueOf(Code(code));
         if (value != std::floor(value)) return value;
     }
     return {};
 }
 
 bool holdsLabels(const Volume& volume) {
-    return volume.labels && !anyBroken(volume);
+    return volume.labels() && !anyBroken(volume);
 }
 
 TransferFunction labelFunction(const std::vector<LabelLook>& looks) {
@@ -44,7 +44,7 @@ TransferFunction labelFunction(const std::vector<LabelLook>& looks) {
         auto& opacities = function.opacities;
         const std::size_t last = opacities.size() - 1;
         if (last > 0 && opacities[last].x == begin && opacities[last - 1].opacity == look.opacity) {
-            // As opaque as the label before: no step between them.
+            // Equal opacity needs no step between the labels.
             opacities.resize(last - 1);
         } else {
             if (opacities.back().x < begin) opacities.push_back({begin, 0, 0.5, 0});
@@ -65,7 +65,7 @@ TransferFunction withColors(const TransferFunction& function, const LabelList& l
                                                     &TransferFunction::ColorPoint::x);
         if (std::distance(begin, colored.colors.end()) < 2 || begin->x != double(label.value) - 0.5)
             continue;
-        // The end of the label before lies at the same place.
+        // The previous label ends at the same place.
         const auto own = begin[1].x == begin->x ? begin + 1 : begin;
         if (std::distance(colored.colors.begin(), own) % 2 != 0) continue;
         own[0].rgb = own[1].rgb = *label.rgb;
@@ -75,7 +75,6 @@ TransferFunction withColors(const TransferFunction& function, const LabelList& l
 
 std::vector<LabelLook> looksOf(const TransferFunction& function) {
     std::vector<LabelLook> looks;
-    // Each label has a colour at either end.
     for (std::size_t i = 0; i + 1 < function.colors.size(); i += 2) {
         const double label = 0.5 * (function.colors[i].x + function.colors[i + 1].x);
         looks.push_back({int(label), function.colors[i].rgb, function.opacityAt(label)});
@@ -85,7 +84,7 @@ std::vector<LabelLook> looksOf(const TransferFunction& function) {
 
 namespace {
 
-// The labels of one kind of change, and what that is called.
+// The labels of one kind of change, and the option's name.
 struct NamedLabels {
     const char* name;
     std::set<int> labels;
@@ -113,8 +112,8 @@ std::set<int> labelsOf(const TransferFunction& table) {
 }
 
 bool isThere(double label, const Volume& volume) {
-    const Code code = volume.codeBook.codeOf(label);
-    return volume.codeBook.valueOf(code) == label && volume.histogram[code] > 0;
+    const Code code = volume.codeBook().codeOf(label);
+    return volume.codeBook().valueOf(code) == label && volume.histogram()[code] > 0;
 }
 
 bool isClear(int label, const LabelChanges& changes) {
@@ -165,10 +164,10 @@ void warnOfUnlistedLabels(const LabelChanges& changes, const TransferFunction& t
                           const Volume& volume, const Listener& listener) {
     const std::set<int> known = labelsOf(table);
     std::set<double> unlisted;
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-        if (volume.histogram[code] == 0) continue;
-        const double value = volume.codeBook.valueOf(Code(code));
-        // Labels have what is half way to their neighbours, as far as labels go.
+    for (std::size_t code = 0; code < volume.histogram().size(); ++code) {
+        if (volume.histogram()[code] == 0) continue;
+        const double value = volume.codeBook().valueOf(Code(code));
+        // Labels reach half way to their neighbours.
         const bool isFar = std::abs(value) > 1e9;
         const int label = isFar ? 0 : int(std::floor(value + 0.5));
         if (value == 0 || known.contains(label)) continue;
@@ -190,8 +189,7 @@ void warnOfUnlistedLabels(const LabelChanges& changes, const TransferFunction& t
 // description files.
 namespace {
 
-// The words of a line; one in double quotes may have spaces, and keeps its first quote. Without
-// any, the line is malformed.
+// Splits a line into words. Words in quotes keep the first quote; if a quote does not end: none.
 std::vector<std::string> wordsOf(const std::string& line) {
     constexpr const char* kSpaces = " \t\r\v\f";
     std::vector<std::string> words;
@@ -215,15 +213,15 @@ std::optional<double> numberOf(const std::string& word) {
     return number;
 }
 
-// The numbers of a line: label, red, green, blue, 0..255, and opacity, 0..1.
+// Label, red, green, blue (0..255) and opacity (0..1).
 using Numbers = std::vector<std::optional<double>>;
 
 bool isOfSnap(const std::vector<std::string>& words) {
     return words.size() == 8 && words[7].front() == '"';
 }
 
-// 3D Slicer: label, name, red, green, blue, alpha 0..255, which may be missing. ITK-SNAP: label,
-// red, green, blue, alpha 0..1, visible, mesh visible, "name".
+// 3D Slicer: label, name, red, green, blue and perhaps alpha, 0..255. ITK-SNAP: label, red, green,
+// blue, alpha 0..1, visible, mesh visible, "name".
 std::optional<LabelLook> lookOf(const std::vector<std::string>& words) {
     const bool snap = isOfSnap(words);
     if (!snap && words.size() != 5 && words.size() != 6) return {};
@@ -247,12 +245,11 @@ std::optional<LabelLook> lookOf(const std::vector<std::string>& words) {
     return look;
 }
 
-// As much of a line as a message can hold.
 std::string quoted(const std::string& line) {
     constexpr std::size_t kMost = 60;
     if (line.size() <= kMost) return '"' + line + '"';
     std::size_t end = kMost;
-    // Not within a character of UTF-8.
+    // Do not cut a UTF-8 character.
     while (end > 0 && (std::uint8_t(line[end]) & 0xC0) == 0x80) --end;
     return '"' + line.substr(0, end) + "...\"";
 }
@@ -263,7 +260,7 @@ std::string quoted(const std::string& line) {
                 "red, green, blue (0..255), alpha (0..1), visible, mesh, \"name\"");
 }
 
-// @param ofSlicer  whether alpha is 0..255, as in FreeSurfer's tables, which look the same
+// @param ofSlicer  whether alpha is 0..255. FreeSurfer's tables have the same form.
 void warnOfClear(const std::filesystem::path& file, bool ofSlicer, const Listener& listener) {
     listener.warn(file.string() + ": all labels are clear" +
                   (ofSlicer ? ", for each has an alpha of 0; where that means opaque, as in tables "
@@ -271,7 +268,6 @@ void warnOfClear(const std::filesystem::path& file, bool ofSlicer, const Listene
                             : ", for each is hidden or has an alpha of 0"));
 }
 
-// A label as a table has it.
 struct LabelLine {
     LabelLook look;
     std::string name;

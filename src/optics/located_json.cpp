@@ -18,13 +18,13 @@ std::string readSmallText(const std::filesystem::path& file, const std::string& 
         throw Error(ErrorCode::kInput, file.string(), got, expected);
     };
     std::error_code ignored;
-    // Looked at first, because opening a pipe waits for who writes to it.
+    // Check the type first, because opening a pipe waits for its writer.
     const auto status = std::filesystem::status(file, ignored);
     if (!std::filesystem::exists(status)) fail("no such file");
     std::ifstream in;
     if (std::filesystem::is_regular_file(status)) in.open(file, std::ios::binary);
     if (!in.is_open()) fail("no file that can be read");
-    // As much at a time as most have in all: room for the largest takes longer than reading them.
+    // Most files fit into one part. Clearing 16 MiB would take longer than reading them.
     constexpr std::size_t kPart = std::size_t{64} << 10;
     std::string text;
     while (in && text.size() <= kMaxBytes) {
@@ -60,7 +60,7 @@ std::string shortened(std::string text) {
     throw Error(ErrorCode::kInput, file.string() + ":" + std::to_string(line), got, expected);
 }
 
-// Walks over text and leaves its place where the handler can see it: the parser tells no line.
+// Walks over text and notes its place for the handler, because the parser reports no lines.
 struct TrackingIterator {
     using iterator_category = std::input_iterator_tag;
     using value_type = char;
@@ -80,7 +80,7 @@ struct TrackingIterator {
     bool operator!=(const TrackingIterator& other) const { return at != other.at; }
 };
 
-// Builds the tree from the parser's events (nlohmann-json's SAX interface).
+// Builds the tree from the events of nlohmann-json's SAX interface.
 class TreeBuilder {
   public:
     TreeBuilder(const std::filesystem::path& file, const std::string& text, const std::string& what)
@@ -157,7 +157,7 @@ class TreeBuilder {
 
     int line() { return lineAt(place_); }
 
-    // The parser reads one character past a number to find its end, which may be the line's end.
+    // The parser reads one character past a number, which may be the end of the line.
     int lineAt(const char* place) {
         if (place > counted_) {
             line_ += int(std::count(counted_, place, '\n'));
@@ -172,7 +172,7 @@ class TreeBuilder {
     int line_ = 1;
     std::string key_;
     LocatedJson root_;
-    std::vector<LocatedJson*> open_;  // stays valid: only the innermost's members grow
+    std::vector<LocatedJson*> open_;  // stays valid: only the innermost one's members grow
 };
 
 }  // namespace
@@ -204,7 +204,7 @@ std::string LocatedJson::quoted() const {
 LocatedJson readLocatedJson(const std::filesystem::path& file, const std::string& what,
                             const std::string& longName) {
     const std::string text = readSmallText(file, longName);
-    // The parser would take it for the end.
+    // The parser would take a 0 for the end.
     if (const std::size_t zero = text.find('\0'); zero != std::string::npos) {
         const auto line = std::count(text.begin(), text.begin() + std::ptrdiff_t(zero), '\n');
         fail(file, 1 + int(line), "a byte that is 0", "valid JSON");

@@ -27,15 +27,14 @@
 namespace deltasplat {
 namespace {
 
-/// Returns the sRGB colours of a well-known colour map over 0..1: viridis, inferno, magma, plasma,
-/// cividis or turbo. Of another name there are none.
+/// Returns the sRGB colours of viridis, inferno, magma, plasma, cividis or turbo; else none.
 std::vector<TransferFunction::ColorPoint> colorMap(const std::string& name);
 
 namespace {
 
 struct ColorMap {
     std::string_view name;
-    std::string_view colors;  // sRGB, RRGGBB, a space between two
+    std::string_view colors;  // sRGB, RRGGBB, separated by spaces
 };
 
 constexpr ColorMap kMaps[] = {
@@ -134,7 +133,6 @@ struct Recipe {
     Opacities opacities;
 };
 
-// Points of straight lines.
 Opacities straight(std::initializer_list<glm::dvec2> points) {
     Opacities opacities;
     for (const glm::dvec2& point : points) opacities.push_back({point.x, point.y, 0.5, 0});
@@ -220,7 +218,7 @@ TransferFunction fire() {
     return function;
 }
 
-// Hues that are a golden section of the circle apart never come back, and neighbours differ much.
+// Hues a golden section apart never repeat, and neighbours differ much.
 glm::dvec3 labelColor(int label) {
     const double turns = label * (std::numbers::phi - 1);
     const double saturation[] = {0.65, 0.85, 0.5};
@@ -280,7 +278,7 @@ void fitPreset(const Preset& preset, const Volume& volume, Optics& optics) {
     if (preset.values != Values::kRange || optics.range) return;
     const DefaultFloats floats;
     glm::dvec2 range = rampRange(volume);
-    // A range has some width: so little that no other value lies in it.
+    // A range needs some width, too small to contain other values.
     constexpr double kLeast = 1e-300;
     if (range.x == range.y)
         range.x = std::min(std::nextafter(range.y, -HUGE_VAL), range.y - kLeast);
@@ -296,11 +294,11 @@ Optics defaultOptics(const Volume& volume) {
     const Preset* const preset = defaultPreset(volume);
     Optics optics;
     optics.transferFunction = preset ? presetFunction(preset->name) : defaultRamp(volume);
-    if (preset && preset->values == Preset::Values::kLabels && volume.labels)
-        optics.transferFunction = withColors(optics.transferFunction, *volume.labels);
+    if (preset && preset->values == Preset::Values::kLabels && volume.labels())
+        optics.transferFunction = withColors(optics.transferFunction, *volume.labels());
     if (isLevelSet(volume)) optics.surface = Surface{};
     const bool isScan = preset && preset->values == Preset::Values::kHounsfield;
-    if (isScan || optics.surface || volume.fromLevelSet) optics.shading = Shading{};
+    if (isScan || optics.surface || volume.fromLevelSet()) optics.shading = Shading{};
     return optics;
 }
 

@@ -27,8 +27,7 @@ namespace deltasplat {
 
 namespace {
 
-// Finds the points around x: `right` is the first point beyond x, so that of several points at the
-// same x the last one counts.
+// Returns the first point beyond x. The point before it is thus the last one at or before x.
 template <typename Point>
 typename std::vector<Point>::const_iterator firstBeyond(const std::vector<Point>& points,
                                                         double x) {
@@ -53,29 +52,28 @@ double sharpBlend(double from, double to, double s, double sharpness) {
     return std::clamp(value, std::min(from, to), std::max(from, to));
 }
 
-// How often each code occurs, what is cut off included: of a volume that was cut counting takes a
-// walk, so it is asked for once.
+// Frequency of each code in the uncut volume, counted once because a cut volume takes a walk.
 using Counts = std::vector<std::uint64_t>;
 
 // As bulkRange.
 glm::dvec2 bulkOf(const Volume& volume, Counts counts) {
     for (std::size_t code = 0; code < counts.size(); ++code) {
-        if (volume.codeBook.standsFor(Code(code), volume.background)) counts[code] = 0;
+        if (volume.codeBook().standsFor(Code(code), volume.background())) counts[code] = 0;
     }
     if (std::all_of(counts.begin(), counts.end(), [](std::uint64_t count) { return count == 0; }))
-        return {volume.background, volume.background + 1};
-    return {volume.codeBook.valueOf(percentileCode(counts, 1)),
-            volume.codeBook.valueOf(percentileCode(counts, 99))};
+        return {volume.background(), volume.background() + 1};
+    return {volume.codeBook().valueOf(percentileCode(counts, 1)),
+            volume.codeBook().valueOf(percentileCode(counts, 99))};
 }
 
 // As rampRange.
 glm::dvec2 rampOf(const Volume& volume, const Counts& counts) {
     glm::dvec2 range = bulkOf(volume, counts);
-    if (isFog(volume) && volume.background < range.y) range.x = volume.background;
+    if (isFog(volume) && volume.background() < range.y) range.x = volume.background();
     return range;
 }
 
-// Whether most values lie around 0, of cells of the same width, one of which has 0 in its middle.
+// Whether the fullest of 17 equal cells is the one with 0 in its middle.
 bool mostAreNearZero(const Volume& volume, const glm::dvec2& ends, const Counts& counts) {
     constexpr int kCells = 8;
     const auto cellOf = [&](double value) {
@@ -83,15 +81,15 @@ bool mostAreNearZero(const Volume& volume, const glm::dvec2& ends, const Counts&
     };
     std::vector<std::uint64_t> cells(2 * kCells + 1);
     for (std::size_t code = 0; code < counts.size(); ++code) {
-        const double value = counts[code] == 0 ? ends.y : volume.codeBook.valueOf(Code(code));
+        const double value = counts[code] == 0 ? ends.y : volume.codeBook().valueOf(Code(code));
         if (counts[code] != 0 && value >= ends.x && value <= ends.y)
             cells[cellOf(value)] += counts[code];
     }
     return std::max_element(cells.begin(), cells.end()) == cells.begin() + cellOf(0);
 }
 
-// Whether values lie on both sides of 0, which stands for nothing: a map of z values, a difference.
-// A side that is less than a tenth of the other is no side: filters overshoot that far.
+// Whether values lie on both sides of 0 and 0 means nothing, as in z maps or differences. A side
+// below a tenth of the other does not count, because filters overshoot that far.
 bool divergesFromZero(const Volume& volume, const glm::dvec2& bulk, const Counts& counts) {
     constexpr double kLeastSide = 0.1;
     const double least = kLeastSide * std::max(-bulk.x, bulk.y);
@@ -100,7 +98,7 @@ bool divergesFromZero(const Volume& volume, const glm::dvec2& bulk, const Counts
     return background ? *background == 0 : mostAreNearZero(volume, bulk, counts);
 }
 
-// Clear at 0, the same blue and red as those of the preset coolwarm at the farther of two ends.
+// Clear at 0; the blue and red of the preset coolwarm at the end farther from 0, and its mirror.
 TransferFunction divergingRamp(const glm::dvec2& range) {
     const double end = std::max(-range.x, range.y);
     TransferFunction ramp;
@@ -128,13 +126,13 @@ glm::dvec3 TransferFunction::colorAt(double x) const {
 
 bool TransferFunction::colorsJump() const {
     if (categorical) return true;
-    // As close as "Step" puts the points of a jump, and closer than anybody else would.
+    // Only the points of a "Step" jump are that close.
     constexpr double kShare = 0x1p-30;
     for (std::size_t i = 1; i < colors.size(); ++i) {
         const double apart = colors[i].x - colors[i - 1].x;
         const double range = colors.back().x - colors.front().x;
         if (apart > kShare * range || colors[i].rgb == colors[i - 1].rgb) continue;
-        // What is clear has no colour.
+        // Clear values have no colour.
         constexpr double kFar = std::numeric_limits<double>::max();
         if (opacityAt(std::nextafter(colors[i - 1].x, -kFar)) > 0 &&
             opacityAt(std::nextafter(colors[i].x, kFar)) > 0)
@@ -148,8 +146,8 @@ double TransferFunction::opacityAt(double x) const {
     if (right == opacities.begin()) return opacities.front().opacity;
     if (right == opacities.end()) return opacities.back().opacity;
 
-    // The left point's midpoint and sharpness shape the way to the right one; VTK takes the ends of
-    // the sharpness' range for a straight line and for a step.
+    // The left point's midpoint and sharpness shape the way to the right point. VTK treats the ends
+    // of the sharpness range as a straight line and as a step.
     const OpacityPoint& left = right[-1];
     const double s = bendToMidpoint(wayBetween(left.x, right->x, x), left.midpoint);
     if (left.sharpness < 0.01) return std::lerp(left.opacity, right->opacity, s);
@@ -158,20 +156,20 @@ double TransferFunction::opacityAt(double x) const {
 }
 
 bool isFog(const Volume& volume) {
-    return volume.gridClass == "fog volume" ||
-           (volume.hasBackground && volume.gridClass == "unknown" && volume.space.empty() &&
-            volume.name == "density");
+    return volume.gridClass() == "fog volume" ||
+           (volume.hasBackground() && volume.gridClass() == "unknown" && volume.space().empty() &&
+            volume.name() == "density");
 }
 
 bool isHounsfield(const Volume& volume) {
-    if (volume.space.empty() || volume.empty()) return false;
+    if (volume.space().empty() || volume.empty()) return false;
     const std::vector<std::uint64_t> counts = uncutHistogram(volume);
     const double all = std::accumulate(counts.begin(), counts.end(), 0.0);
     const auto shareWithin = [&](double low, double high) {
         double count = 0;
         for (std::size_t code = 0; code < counts.size(); ++code) {
             if (counts[code] == 0) continue;
-            const double value = volume.codeBook.valueOf(Code(code));
+            const double value = volume.codeBook().valueOf(Code(code));
             if (value >= low && value <= high) count += double(counts[code]);
         }
         return count / all;
@@ -198,7 +196,7 @@ TransferFunction defaultRamp(const Volume& volume) {
 TransferFunction defaultRamp(const Volume& volume, const glm::dvec2& range) {
     TransferFunction ramp = greyRamp(range);
     if (!isFog(volume)) return ramp;
-    // Thin fog lets more of what is behind it through; it does not grow dark.
+    // Thin fog becomes more transparent, not darker.
     ramp.name = "white ramp";
     ramp.colors = {{range.x, glm::dvec3(1)}};
     return ramp;
@@ -206,7 +204,7 @@ TransferFunction defaultRamp(const Volume& volume, const glm::dvec2& range) {
 
 TransferFunction wholeRamp(const Volume& volume) {
     const DefaultFloats floats;
-    return wholeRamp(volume, {volume.valueMin, volume.valueMax});
+    return wholeRamp(volume, {volume.valueMin(), volume.valueMax()});
 }
 
 TransferFunction wholeRamp(const Volume&, const glm::dvec2& range) {
@@ -216,13 +214,13 @@ TransferFunction wholeRamp(const Volume&, const glm::dvec2& range) {
 }
 
 glm::dvec2 defaultRange(const Volume& volume) {
-    if (const auto all = rangeOfType(volume.type)) return *all;
-    glm::dvec2 range(volume.valueMin, volume.valueMax);
-    if (volume.hasBackground) {
-        range = {std::min(range.x, volume.background), std::max(range.y, volume.background)};
+    if (const auto all = rangeOfType(volume.type())) return *all;
+    glm::dvec2 range(volume.valueMin(), volume.valueMax());
+    if (volume.hasBackground()) {
+        range = {std::min(range.x, volume.background()), std::max(range.y, volume.background())};
     }
 
-    // One value only: nothing should be as clear as 0, and anything else as dense as the largest.
+    // With a single value, 0 should be clear and the value itself dense.
     if (range.x == range.y) range = {std::min(range.x, 0.0), std::max(range.y, 0.0)};
     return range.x < range.y ? range : glm::dvec2(0, 1);
 }
@@ -256,12 +254,12 @@ double hiddenShare(const Volume& volume, const TransferFunction& function,
     const std::optional<double> background = guessBackground(volume);
     std::uint64_t all = 0;
     std::uint64_t hidden = 0;
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-        if (volume.histogram[code] == 0) continue;
-        if (background && volume.codeBook.standsFor(Code(code), *background)) continue;
-        all += volume.histogram[code];
-        if (!showsValue(function, range, volume.type, volume.codeBook.valueOf(Code(code))))
-            hidden += volume.histogram[code];
+    for (std::size_t code = 0; code < volume.histogram().size(); ++code) {
+        if (volume.histogram()[code] == 0) continue;
+        if (background && volume.codeBook().standsFor(Code(code), *background)) continue;
+        all += volume.histogram()[code];
+        if (!showsValue(function, range, volume.type(), volume.codeBook().valueOf(Code(code))))
+            hidden += volume.histogram()[code];
     }
     return all > 0 ? double(hidden) / double(all) : 0;
 }
@@ -270,7 +268,7 @@ namespace {
 
 using Kind = LocatedJson::Kind;
 
-// One preset of a file, with everything that turns its members into checked values.
+// One preset of a file and the checks of its members.
 class PresetReader {
   public:
     PresetReader(const std::filesystem::path& file, const LocatedJson& preset)
@@ -290,7 +288,7 @@ class PresetReader {
         return member->flag;
     }
 
-    // ParaView writes a switch as a number, too.
+    // ParaView also writes flags as numbers.
     bool flagOrNumber(const char* name) const {
         const LocatedJson* member = preset_.find(name);
         return member && member->kind == Kind::kNumber ? member->number != 0 : flag(name);
@@ -298,7 +296,7 @@ class PresetReader {
 
     bool has(const char* name) const { return preset_.find(name) != nullptr; }
 
-    // Calls add(x, three numbers) for each of the points, groups of four numbers.
+    // Calls add(x, three numbers) per point, a group of four numbers.
     // @param most  of the three: 1, or infinity
     template <typename Add>
     void points(const char* name, const char* meaning, double most, const Add& add) const {
@@ -360,7 +358,6 @@ class PresetReader {
                 "a transfer function, an object with RGBPoints");
 }
 
-// All of a file's transfer functions: one, or an array.
 std::vector<const LocatedJson*> presetsOf(const std::filesystem::path& file,
                                           const LocatedJson& root) {
     std::vector<const LocatedJson*> presets;
@@ -373,14 +370,14 @@ std::vector<const LocatedJson*> presetsOf(const std::filesystem::path& file,
     return presets;
 }
 
-// "" for one without a name, and for one that is malformed: that is said of the one that is read.
+// "" if the name is missing or malformed; only the preset that is read is checked.
 std::string nameOf(const LocatedJson& preset) {
     const LocatedJson* name = preset.kind == Kind::kObject ? preset.find("Name") : nullptr;
     return name && name->kind == Kind::kString ? name->text : "";
 }
 
-// Where the interval behind `left` begins: so little behind it that what lies at the point itself,
-// give or take the rounding of a normalized range, has the point's own colour.
+// Returns where the interval behind `left` begins: just far enough that values at the point itself
+// keep the point's colour despite rounding of a normalized range.
 double justBehind(double left, double right) {
     constexpr double kShare = 0x1p-40;
     return std::max(left + (kShare * right - kShare * left), std::nextafter(left, right));
@@ -397,8 +394,7 @@ void makeSteps(std::vector<TransferFunction::ColorPoint>& colors) {
     colors = std::move(steps);
 }
 
-// Puts the stops of the shortest way between two colours, as CIEDE2000 measures it, between them;
-// from stop to stop colours are mixed as L*a*b*.
+// Inserts the stops of the shortest CIEDE2000 way between colours, which are then mixed as L*a*b*.
 void makePaths(std::vector<TransferFunction::ColorPoint>& colors) {
     ColorPaths paths;
     std::vector<TransferFunction::ColorPoint> all{colors.front()};
@@ -418,7 +414,7 @@ void makePaths(std::vector<TransferFunction::ColorPoint>& colors) {
 void readColors(const std::filesystem::path& file, const PresetReader& preset,
                 const Listener& listener, TransferFunction& function) {
     function.linearColors = preset.text("ColorSpaceOfPoints", "sRGB") == "linear";
-    // Light knows no largest value, a share of what a screen shows does.
+    // Scene-linear light has no upper limit; sRGB has.
     const double most = function.linearColors ? std::numeric_limits<double>::infinity() : 1;
     preset.points("RGBPoints", "x, red, green, blue", most, [&](double x, const glm::dvec3& rgb) {
         function.colors.push_back({x, rgb});
@@ -433,7 +429,7 @@ void readColors(const std::filesystem::path& file, const PresetReader& preset,
         function.colorSpace = ColorSpace::kLab;
     } else if (space == "Lab/CIEDE2000") {
         function.colorSpace = ColorSpace::kLab;
-        // The ways lead through the colours of a screen, and beyond there are more.
+        // The ways lead through screen colours only.
         if (function.linearColors) {
             listener.warn(file.string() + ": ColorSpace " + space +
                           " with linear colours is interpolated as Lab");
@@ -447,8 +443,7 @@ void readColors(const std::filesystem::path& file, const PresetReader& preset,
     }
 }
 
-// A colour map without opacities is common among ParaView's presets, whose opacity editor then
-// shows a straight ramp over the colours' range.
+// ParaView's presets often lack opacities; its opacity editor then shows a straight ramp.
 void readOpacities(const std::filesystem::path& file, const PresetReader& preset,
                    const Listener& listener, TransferFunction& function) {
     if (preset.has("Points")) {

@@ -37,7 +37,7 @@ ValueColors::ValueColors(const Volume& volume, const Optics& optics)
     low_ = range.x;
     unit_ = range.y - range.x;
     if (!(high > low)) return;
-    // A point that lies on the border of two steps bends both.
+    // A point on the border of two steps bends both.
     for (const TransferFunction::ColorPoint& point : function.colors) {
         const double place = (point.x - low) / (high - low) * kSteps;
         for (const double side : {place - 1e-6, place + 1e-6})
@@ -55,7 +55,7 @@ glm::vec3 ValueColors::colorOf(float value) const {
 
 namespace {
 
-// Far more than any value that counts, and its square is a float.
+// Far beyond any relevant value; its square still fits into a float.
 constexpr double kMost = 1e15;
 
 }  // namespace
@@ -65,7 +65,7 @@ double gradientNoise(const Volume& volume) {
     const glm::dvec2 bulk = bulkRange(volume);
     const double most = kShareOfNoise * (bulk.y - bulk.x);
     if (most > 0) return most;
-    const double all = kShareOfNoise * (0.5 * volume.valueMax - 0.5 * volume.valueMin);
+    const double all = kShareOfNoise * (0.5 * volume.valueMax() - 0.5 * volume.valueMin());
     return all > 0 ? all : 1;
 }
 
@@ -79,9 +79,9 @@ GradientScale scaledValues(const Volume& volume, double zero, const std::optiona
     scale.ofCode.resize(kCodeCount);
     const std::vector<std::uint64_t> counts = uncutHistogram(volume);
     for (std::size_t code = 0; code < counts.size(); ++code) {
-        if (counts[code] != 0) scale.ofCode[code] = scaled(volume.codeBook.valueOf(Code(code)));
+        if (counts[code] != 0) scale.ofCode[code] = scaled(volume.codeBook().valueOf(Code(code)));
     }
-    if (volume.hasBackground) scale.background = scaled(volume.background);
+    if (volume.hasBackground()) scale.background = scaled(volume.background());
     return scale;
 }
 

@@ -10,7 +10,7 @@
 
 namespace deltasplat {
 
-// What is faded has less of the opacity over a unit distance, of which each step takes its part.
+// The alpha of a step follows from the reduced opacity over a unit distance.
 void LookLight::fade(const std::uint16_t* classes, const OwnLook* looks, WordUnits& colors) const {
     unsigned any = 0;
     for (std::size_t n = 0; n < 64; ++n) any |= looks[n].faded;

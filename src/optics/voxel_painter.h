@@ -22,12 +22,12 @@
 
 namespace deltasplat {
 
-/// What a voxel looks like beside its class: bits that only its painter understands, and how much
-/// of it there is. What has the same class and the same look is seen alike from everywhere.
+/// The look of a voxel beside its class: bits that only its painter understands, a height, and how
+/// faded it is. Voxels of equal class and equal look are seen alike from everywhere.
 struct OwnLook {
     std::array<std::uint16_t, 3> bits{};
-    std::uint8_t height = 0;  ///< above a surface, as its painter counts; 0: far below
-    /// The share of its class' opacity over a unit distance that it has not, of kAll.
+    std::uint8_t height = 0;  ///< above a surface, in the painter's units; 0: far below
+    /// The missing share of the class' opacity over a unit distance, in 1 / kAll.
     std::uint8_t faded = 0;
 
     static constexpr int kAll = 255;
@@ -37,50 +37,46 @@ struct OwnLook {
     }
 };
 
-/// What a voxel looks like that has a look of its own.
 struct VoxelLook {
-    std::uint16_t number = 0;  ///< of its class, which says how opaque it is; 0: not seen
+    std::uint16_t number = 0;  ///< of the class, which gives the opacity; 0: not seen
     OwnLook own;
 
     bool operator==(const VoxelLook&) const = default;
 };
 
-/// Where a block of 8x8x8 voxels lies, which may be what a volume's own are divided into.
+/// Where a block of 8x8x8 voxels lies. Its voxels may be subdivisions of the volume's voxels.
 struct BlockPlace {
-    glm::dvec3 first;  ///< index position (x, y, z) of its first voxel, in the volume's own voxels
-    glm::dmat3 steps;  ///< from a voxel to the next along slice, u and v, likewise
+    glm::dvec3 first;  ///< index position (x, y, z) of the first voxel, in the volume's voxels
+    glm::dmat3 steps;  ///< from one voxel to the next along slice, u and v, likewise
 };
 
-/// Numbers that a volume's codes stand for where gradients are taken: data values, scaled.
+/// Values of a volume's codes for gradients: data values, scaled.
 struct GradientScale {
     std::vector<float> ofCode;  ///< [kCodeCount], finite
-    /// Of what is not active; empty: nothing is there.
+    /// Value of inactive voxels; empty: they have none.
     std::optional<float> background;
-    double unit = 1;          ///< data units that a number of 1 stands for
-    bool withValues = false;  ///< whether the values are wanted besides
+    double unit = 1;          ///< data units per scaled unit
+    bool withValues = false;  ///< whether painters need BlockField::values, too
 };
 
-/// The scaled values of a block's voxels and how they change, each `[slice][u][v]`.
+/// The scaled values of a block's voxels and their gradients, each `[slice][u][v]`.
 struct BlockField {
-    /// How much the value grows from a voxel of the volume to the next along x, y and z.
+    /// Growth of the value from one voxel of the volume to the next along x, y and z.
     std::array<std::array<float, 512>, 3> gradients;
-    std::array<float, 512> values;  ///< if they are wanted; NaN where nothing is
+    std::array<float, 512> values;  ///< if withValues; NaN where there is no value
 };
 
-/// Where a word's voxels lie: (slice, u, v) of the first.
 using WordPlace = glm::ivec3;
 
-/// Tells what looks are seen as in one picture. Thread-safe.
+/// Turns looks into colours for one picture. Thread-safe.
 class LookLight {
   public:
     virtual ~LookLight() = default;
-    /// The units that colours are in.
     const VoxelUnits& units() const { return units_; }
     double dimmest() const { return dimmest_; }
-    /// Whether there may be something next to what is brightest that one plane cannot tell.
+    /// Whether details beside the brightest voxels may need more than one plane.
     bool isFine() const { return isFine_; }
-    /// Returns the premultiplied colours of a word's voxels; what those get that cannot be seen is
-    /// of no consequence.
+    /// Returns the premultiplied colours of a word's voxels, undefined where they are invisible.
     /// @param classes  [64]
     void light(const WordPlace& place, const std::uint16_t* classes, const OwnLook* looks,
                WordUnits& colors) const {
@@ -89,11 +85,10 @@ class LookLight {
     }
 
   protected:
-    /// @param dimmest  share of the brightest that what is lit worst still has, if it is to be seen
-    ///                 as it is
+    /// @param dimmest  share of the brightest light that still needs full precision
     explicit LookLight(VoxelUnits units, double dimmest = 1)
         : units_(std::move(units)), dimmest_(dimmest) {}
-    /// As light(), of voxels that are not faded.
+    /// As light(), without fading.
     virtual void lightVoxels(const WordPlace& place, const std::uint16_t* classes,
                              const OwnLook* looks, WordUnits& colors) const = 0;
     void setFine() { isFine_ = true; }
@@ -106,69 +101,60 @@ class LookLight {
     bool isFine_ = false;
 };
 
-/// Blocks of 8x8x8 voxels.
 struct BlockSet {
-    std::vector<glm::ivec3> positions;  ///< (x, y, z) of first voxels divided by 8, each once
-    IndexBox box;                       ///< all that is seen of them
+    std::vector<glm::ivec3> positions;  ///< (x, y, z) / 8 of first voxels, without duplicates
+    IndexBox box;                       ///< of the visible voxels
 };
 
-/// A camera, and where the voxels lie that it sees.
 struct LitScene {
     const Camera& camera;
-    glm::dmat4 worldFromVoxel;  ///< of voxels as words count them: (slice, u, v)
-    /// The covariance of where in its slice a voxel is seen, in such voxels: uu, vv and uv.
+    glm::dmat4 worldFromVoxel;  ///< for voxels (slice, u, v) as in words
+    /// The covariance, in such voxels, of a voxel's footprint in its slice: uu, vv and uv.
     glm::dvec3 blur;
     int sliceAxis;
 };
 
-/// Gives voxels looks of their own. Who packs deltas asks it, and knows nothing of what it knows.
-/// Must be thread-safe, and give a voxel the same look whenever it is asked.
+/// Gives voxels looks that only the painter understands. Must be thread-safe and deterministic.
 class VoxelPainter {
   public:
     virtual ~VoxelPainter() = default;
-    /// Whether classes tell colours apart too, not opacities alone.
+    /// Whether classes must distinguish colours, too, not only opacities.
     virtual bool needsColors() const = 0;
-    /// Whether it says of which class voxels are. A voxel may then be seen if it or one beside it
-    /// is of a class that is.
+    /// Whether the painter chooses the classes. A voxel may then be seen if a neighbour is.
     virtual bool choosesClasses() const { return false; }
-    /// If it does, whether a voxel of a code is seen for itself: then it is shown, in class 1 and
-    /// as any OwnLook is at first, where nothing that it is divided into is inside.
+    /// Only if choosesClasses(): whether a voxel of a code is shown although none of its
+    /// subdivisions is inside. Such a voxel has class 1 and a default OwnLook.
     virtual bool isSeenItself(Code /*code*/) const { return false; }
-    /// If it does, the OwnLook::height up to which voxels are inside of what they are of.
+    /// Only if choosesClasses(): the largest OwnLook::height of voxels inside the surface.
     virtual int heightOfSurface() const { return OwnLook::kAll; }
-    /// What gradients are to be taken of; null: it needs none.
+    /// The values for gradients; null: the painter needs none.
     virtual const GradientScale* gradientScale() const { return nullptr; }
-    /// Paints the voxels of a block that can be seen; what others get is of no consequence.
-    /// @param field    if it needs gradients
-    /// @param classes  [slice][u][v]: 0 is what cannot be seen; written if it chooses them, else
-    ///                 at most cleared, or made kClearClass where they are 0 if there is more()
+    /// Paints the visible voxels of a block; the results of other voxels are undefined.
+    /// @param field    if the painter needs gradients
+    /// @param classes  [slice][u][v], 0: invisible. Written if choosesClasses(); otherwise only
+    ///                 cleared, or, if there is more(), changed from 0 to kClearClass.
     virtual void paint(const BlockPlace& place, const BlockField* field,
                        std::span<std::uint16_t, 512> classes,
                        std::span<OwnLook, 512> looks) const = 0;
-    /// Whether what is painted looks different from different sides.
     virtual bool dependsOnCamera() const = 0;
-    /// Whether voxels may go on as what they were in the slice before (PackOptions::looksHold): not
-    /// if that depends on the camera, nor if opacity is not that of classes.
+    /// Whether PackOptions::looksHold may apply: no camera, and the opacities of classes.
     virtual bool mayHold() const { return !dependsOnCamera(); }
-    /// Whether what has the same class and look is seen as something else in another place, from
-    /// whichever side. Voxels then change from each slice to the next, and are not divided.
+    /// Whether equal looks are seen differently elsewhere. Voxels then change in each slice.
     virtual bool isEverywhereOther() const { return false; }
-    /// Whether it can paint what voxels are divided into.
     virtual bool dividesVoxels() const { return !isEverywhereOther(); }
-    /// What it may paint besides voxels that can be seen; null: nothing.
+    /// Blocks that the painter may fill besides visible voxels; null: none.
     virtual const BlockSet* more() const { return nullptr; }
-    /// Returns what looks are seen as.
-    /// @param classes  what those of paint() look like
-    /// @param scene    null where nothing depends on it
+    /// Returns the light that turns looks into colours.
+    /// @param classes  the classes of paint()
+    /// @param scene    null if nothing depends on the camera
     virtual std::unique_ptr<const LookLight> lightOf(const ClassTable& classes,
                                                      const LitScene* scene) const = 0;
 };
 
-/// Returns who paints the voxels of a volume: nobody, if the transfer function says all.
+/// Returns the painter for a volume; null if the transfer function determines all looks.
 std::unique_ptr<const VoxelPainter> makePainter(const Volume& volume, const Optics& optics);
 
-/// Returns the look that is a colour, scene-linear and not multiplied by opacity: three half
-/// floats of at least 0, which have one notation each.
+/// Returns a scene-linear colour, not multiplied by opacity, as three half floats >= 0.
 inline OwnLook lookOfColor(const glm::dvec3& color) {
     OwnLook look;
     for (int c = 0; c < 3; ++c)
@@ -176,7 +162,6 @@ inline OwnLook lookOfColor(const glm::dvec3& color) {
     return look;
 }
 
-/// Returns the colour that lookOfColor() made a look of.
 inline glm::dvec3 colorOfLook(const OwnLook& look) {
     glm::dvec3 color;
     for (int c = 0; c < 3; ++c) {
@@ -187,7 +172,6 @@ inline glm::dvec3 colorOfLook(const OwnLook& look) {
     return color;
 }
 
-/// Voxels shine in the colours of their classes.
 class ClassLight : public LookLight {
   public:
     explicit ClassLight(const ClassTable& classes);
@@ -200,36 +184,34 @@ class ClassLight : public LookLight {
     std::vector<glm::vec4> colors_;  // [classes]: premultiplied
 };
 
-// The painters that makePainter (voxel_painter.h) chooses from, of volumes that are not empty.
+// The painters that makePainter() chooses from; their volumes are not empty.
 
-/// Returns who colours voxels by where they are.
+/// Returns the painter that colours voxels by position.
 /// @param colorBy  not kValue
 std::unique_ptr<const VoxelPainter> makePositionPainter(const Volume& volume, ColorBy colorBy);
 
-/// Returns who knows how voxels lie, so that they reflect lights in the colours of their classes.
+/// Returns the painter that stores gradients, so that voxels reflect lights.
 std::unique_ptr<const VoxelPainter> makeShadingPainter(const Volume& volume,
                                                        const Shading& shading);
 
-/// Returns who draws a surface. Voxels are of the class that is seen by the share of them that lies
-/// inside.
-/// @param shading  empty: in one colour from everywhere
+/// Returns the painter of a surface. Voxels show by their share inside the surface.
+/// @param shading  empty: one colour from all sides
 std::unique_ptr<const VoxelPainter> makeSurfacePainter(const Volume& volume, const Surface& surface,
                                                        const std::optional<Shading>& shading);
 
-/// Returns who lights fog. Sweeps the volume from each light on.
+/// Returns the painter that lights fog. Sweeps the volume from each light on.
 /// @param optics  with scattering
 /// @throw Error(kFailed) if there is not enough memory
 std::unique_ptr<const VoxelPainter> makeScatterPainter(const Volume& volume, const Optics& optics);
 
-/// Returns who makes voxels less opaque by how much values change there.
-/// @param factors  Optics::gradientOpacity, not empty
-/// @param inner    who paints them otherwise; null: they look as their classes do
+/// Returns the painter that fades voxels by their gradients (Optics::gradientOpacity, not empty).
+/// @param inner  painter of the looks; null: voxels look like their classes
 std::unique_ptr<const VoxelPainter> makeFadingPainter(const Volume& volume,
                                                       const std::vector<glm::dvec2>& factors,
                                                       std::unique_ptr<const VoxelPainter> inner);
 
-/// Returns who adds the other parts of a medium, and colours of grids, to a volume, which may be
-/// empty, and lights it as makeScatterPainter does, if that is asked for.
+/// Returns the painter that adds other parts and colour grids to a volume, which may be empty. Also
+/// lights the medium, as makeScatterPainter() does, if asked for.
 std::unique_ptr<const VoxelPainter> makeMediumPainter(const Volume& volume, const Optics& optics);
 
 }  // namespace deltasplat

@@ -9,7 +9,7 @@
 namespace deltasplat {
 namespace {
 
-// What is dimmed by less than this cannot be told from black.
+// Cap of shares_: dimming by more than this is black anyway.
 constexpr float kMostShare = 1e36f;
 
 }  // namespace
@@ -21,7 +21,7 @@ VoxelUnits::VoxelUnits(const ClassTable& classes, const glm::dvec3& brightest)
     const std::vector<double> alphas = classes.alphas();
     const double largest = *std::max_element(alphas.begin(), alphas.end());
     scale_ = glm::dvec4(brightest, 1) * largest / double(ClassTable::kMax);
-    // As shares they can be neither too large nor too small to reckon with.
+    // Shares of the largest neither overflow nor underflow.
     for (const double alpha : alphas)
         alphas_.push_back(largest > 0 ? float(alpha / largest * ClassTable::kMax) : 0);
     unitsOfOpaque_ = largest > 0 ? float(ClassTable::kMax / largest) : 0;
@@ -64,7 +64,7 @@ std::vector<double> depthsOf(const ClassTable& classes, double wayWorld) {
     const double unitDistances = classes.extinctionScale * (wayWorld / classes.unitDistanceWorld);
     std::vector<double> depths;
     for (const Look& look : classes.looks) {
-        // Nothing times infinity is nothing.
+        // 0 times infinity must be 0.
         const bool isAny = unitDistances > 0 && look.extinction > 0;
         depths.push_back(isAny ? look.extinction * unitDistances : 0);
     }

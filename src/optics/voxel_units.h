@@ -11,41 +11,35 @@
 
 namespace deltasplat {
 
-/// Premultiplied colours of 64 voxels as channels of floats, RGBA, in units of VoxelUnits.
+/// Premultiplied colours of 64 voxels by channel, RGBA, in VoxelUnits.
 using WordUnits = std::array<std::array<float, 64>, 4>;
 
-/// The units, those of a class table's first plane, in which voxels are stated that have looks of
-/// their own.
+/// The units of colours of voxels with own looks, based on those of a class table's first plane.
 class VoxelUnits {
   public:
-    /// @param classes    of opacities
-    /// @param brightest  no channel of any colour, not multiplied by opacity, is larger; finite, at
-    ///                   least 0
+    /// @param classes    give the opacities
+    /// @param brightest  largest channels of all colours, not multiplied by opacity; finite, >= 0
     VoxelUnits(const ClassTable& classes, const glm::dvec3& brightest);
 
-    /// Makes units large enough for what has other colours than its class, or another opacity.
+    /// Enlarges the units for voxels whose colour or opacity differs from their class.
     /// @param most  the largest premultiplied colour
     void raise(const glm::dvec4& most);
 
     const glm::dvec3& brightest() const { return brightest_; }
-    /// Value of one unit of each channel on the first plane; 0 for one that is always 0.
+    /// Value of one unit per channel on the first plane; 0 for a channel that is always 0.
     const glm::dvec4& scale() const { return scale_; }
-    /// Returns the opacity of a class, 0..ClassTable::kMax.
     float alphaOf(std::uint16_t number) const { return alphas_[number]; }
-    /// Returns the opacity of a class over a unit distance, 0..1.
+    /// Over a unit distance, 0..1.
     float opacityOf(std::uint16_t number) const { return opacities_[number]; }
-    /// How many unit distances a step is, as extinction counts them.
+    /// The length of a step in unit distances, with the extinction scale.
     float unitDistances() const { return unitDistances_; }
-    /// What alphaOf() an opacity of 1 would be.
+    /// The alphaOf() of a class of opacity 1.
     float unitsOfOpaque() const { return unitsOfOpaque_; }
-    /// What a colour's channels are multiplied by to become shares of the brightest.
+    /// Factors that turn a colour's channels into shares of the brightest.
     const glm::vec3& shares() const { return shares_; }
-    /// Returns the premultiplied colour of a voxel.
-    /// @param number  of its class
-    /// @param color   scene-linear, not multiplied by opacity; may be brighter than the brightest
-    ///                where it is dimmed afterwards
+    /// @param color  scene-linear, without opacity; above the brightest only if dimmed later
     glm::vec4 unitsOf(std::uint16_t number, const glm::vec3& color) const;
-    /// Returns the premultiplied colours of all classes, [classes], in their own colours.
+    /// [classes]
     std::vector<glm::vec4> unitsOfClasses(const ClassTable& classes) const;
 
     bool operator==(const VoxelUnits&) const = default;
@@ -60,11 +54,10 @@ class VoxelUnits {
     glm::dvec4 scale_;
 };
 
-/// Returns the extinction of each class on a way of so many world units, [classes]: 0 where there
-/// is none, infinite where it is opaque.
+/// Returns the extinction of each class over a way, [classes]; infinite if opaque.
 std::vector<double> depthsOf(const ClassTable& classes, double wayWorld);
 
-/// Returns the largest that any class has of each channel, not multiplied by opacity.
+/// Returns the largest value per channel of any class' colour, not multiplied by opacity.
 glm::dvec3 brightestOf(const ClassTable& classes);
 
 }  // namespace deltasplat

@@ -22,11 +22,11 @@
 namespace deltasplat {
 namespace {
 
-// Where voxels cover fewer pixels of the screen, one sheet pixel for each and its footprint, which
-// grows slowly (defaultSigma), take a fraction of the time of two and theirs, and blur as little.
+// For smaller voxels on the screen, one sheet pixel per voxel takes a fraction of the time of two.
+// Its footprint, which grows slowly (defaultSigma), blurs as little.
 constexpr double kLeastPixelsOfTwoSheetPixels = 5;
 
-// What whole blocks are divided into is counted with 32 bits, and some more voxels around it.
+// Coordinates of divided blocks, and of some voxels around them, must fit 32 bits.
 bool canBeDivided(const IndexBox& box, int between) {
     constexpr std::int64_t kMost = std::int64_t{1} << 30;
     const glm::i64vec3 wide = glm::i64vec3(box.max) - glm::i64vec3(box.min) + std::int64_t{16};
@@ -64,26 +64,25 @@ bool dividesVoxels(const PreparedScene::Impl& scene) {
     return !scene.painter || scene.painter->dividesVoxels();
 }
 
-// Whether voxels of a view, or what they are divided into, have a sheet pixel of their own if
-// nothing else is asked for.
+// Whether voxels of a view, or their parts, get a sheet pixel of their own by default.
 bool hasOwnPixelIn(const Factorization& view, double parts, double resolution) {
     return hasOwnPixel(view.pixelsPerVoxel / parts * (1 + kSnap), resolution);
 }
 
-// Whether the screen asks for values between voxels, and nobody says otherwise.
+// Whether the screen needs values between voxels and no option decides.
 bool wantsDivided(const PreparedScene::Impl& scene, const Factorization& view) {
     const SplatOptions& options = scene.options;
     if (view.resolution < 2 || options.resolution || options.footprintWidth) return false;
-    // Of the transfer function that was asked for, whatever colours are by.
+    // The transfer function as given, whatever the colours are by.
     const Optics& optics = scene.scene.optics;
     if (!optics.surface && optics.transferFunction.colorsJump()) return false;
     return !scene.scene.volume->empty() && !scene.isThin && dividesVoxels(scene);
 }
 
-// Whether voxels are few enough to be divided unasked.
+// Whether there are few enough voxels to divide them by default.
 bool areFewEnough(const PreparedScene::Impl& scene, const Factorization& view,
                   const Listener& listener) {
-    const IndexBox& box = scene.scene.volume->box;
+    const IndexBox& box = scene.scene.volume->box();
     if (!canBeDivided(box, 1)) {
         listener.warn("the volume is too wide for voxels to be divided: drawn as they are");
         return false;
@@ -98,22 +97,22 @@ bool areFewEnough(const PreparedScene::Impl& scene, const Factorization& view,
     return false;
 }
 
-// Whether voxels are so small on the screen that slices may be joined two and two: moved by a
-// quarter of a voxel along u and along v, which is less than a fifth of a pixel, in a picture that
-// averages two voxels each way at least, nothing of one voxel's width is seen to move.
+// Whether voxels are small enough on the screen to join pairs of slices. Joining moves voxels by a
+// quarter voxel along u and v, less than a fifth of a pixel. In a picture that averages at least
+// two voxels each way, no detail of one voxel's width visibly moves.
 bool areSmall(const Camera& camera, const Volume& volume, const Factorization& view) {
     constexpr double kMostPixelsPerVoxel = 0.5;
-    // From an eye the nearest voxel covers more than others.
+    // From an eye, the nearest voxel covers most.
     constexpr double kMostOfNearest = 0.75;
     if (!(view.pixelsPerVoxel * (1 - kSnap) <= kMostPixelsPerVoxel)) return false;
     if (!view.eye) return true;
     double longest = 0;
     for (int axis = 0; axis < 3; ++axis)
-        longest = std::max(longest, glm::length(glm::dvec3(volume.worldFromIndex[axis])));
-    return mostPixelsOf(longest, camera, volume.box, volume.worldFromIndex) <= kMostOfNearest;
+        longest = std::max(longest, glm::length(glm::dvec3(volume.worldFromIndex()[axis])));
+    return mostPixelsOf(longest, camera, volume.box(), volume.worldFromIndex()) <= kMostOfNearest;
 }
 
-// Returns how so many slices are moved along lines of sight, by whole voxels.
+// Returns how joined slices move along lines of sight, by whole voxels.
 JoinedSlants slantsOf(const Factorization& view, int joined, int within) {
     if (view.eye) {
         JoinedSlants slants;
@@ -123,9 +122,8 @@ JoinedSlants slantsOf(const Factorization& view, int joined, int within) {
     return joinedSlants(view.shiftPerSlice, joined, within);
 }
 
-// Whether so many slices may be joined, more than two: as far as so many voxels side by side cover
-// a few pixels, none of them is moved by more than a quarter of one, and what is thin stays as
-// dense.
+// Whether more than two slices may be joined: if that many voxels cover only a few pixels, no voxel
+// moves by more than a quarter pixel, and thin volumes keep their density.
 bool mayJoin(const Factorization& view, const JoinedVoxels& joined) {
     constexpr double kMostPixelsOfAll = 4;
     constexpr double kMostPixelsMoved = 0.25;
@@ -135,10 +133,9 @@ bool mayJoin(const Factorization& view, const JoinedVoxels& joined) {
     return slants.keepsDensity && moved * (1 - kSnap) <= kMostPixelsMoved;
 }
 
-// Returns what may be joined of more than two slices, the most first. Voxels beside each other
-// become one as far as an edge, which may move from one of them to another, moves by less than a
-// fifth of a pixel; and of so many slices that little goes on from some to the next, but no more,
-// which would take longer to join than they save.
+// Returns the candidates of more than two slices, the largest first. Neighbouring voxels may be
+// joined while edges move by less than a fifth of a pixel. They need enough slices that little
+// continues from one group to the next; more would take longer to join than they save.
 std::vector<JoinedVoxels> manyJoined(const Factorization& view, int most) {
     constexpr double kMostPixelsBeside = 0.1875;
     constexpr int kDepth = 8;
@@ -162,12 +159,12 @@ JoinedVoxels joinedUnasked(const PreparedScene::Impl& scene, const Camera& camer
     const Volume& volume = *scene.scene.volume;
     if (options.mostJoined < 2 || options.resolution || options.between || options.sigma ||
         options.footprintWidth || !scene.canJoinSlices() ||
-        volume.activeCount < leastVoxelsJoined || !areSmall(camera, volume, view))
+        volume.activeCount() < leastVoxelsJoined || !areSmall(camera, volume, view))
         return {};
-    // Numbering looks takes what it saves, but of volumes that are larger still.
+    // Numbering looks pays only in still larger volumes.
     constexpr std::uint64_t kTimesLarger = 32;
     const bool isWorthIt =
-        scene.hasOneColor() || volume.activeCount >= kTimesLarger * leastVoxelsJoined;
+        scene.hasOneColor() || volume.activeCount() >= kTimesLarger * leastVoxelsJoined;
     const bool canBeMany = options.mostJoined > 2 && !view.eye && isWorthIt;
     std::vector<JoinedVoxels> may;
     if (canBeMany) may = manyJoined(view, options.mostJoined);
@@ -175,12 +172,10 @@ JoinedVoxels joinedUnasked(const PreparedScene::Impl& scene, const Camera& camer
     return scene.joinJudge.firstUnseen(may, scene, view);
 }
 
-// Of the picture's pixels that a line of the base plane has at most, seen from an eye: about what
-// parallel projection has on average.
+// Picture pixels per line of an eye's base plane, at most: about parallel projection's average.
 constexpr double kPixelsOfScreen = 0.7;
 
-// Of the slopes of a region, that of the way a camera looks, or the one nearest to it: what is
-// around a picture's frame does not move it.
+// The slope in a region nearest to the camera's direction. A larger frame does not change it.
 glm::dvec2 middleSlope(const Camera& camera, const Factorization& view) {
     const glm::dvec3 ahead = glm::inverse(view.worldFromStep) * camera.direction;
     if (camera.projection == Projection::kLatlong || !(ahead.x > 0))
@@ -188,13 +183,12 @@ glm::dvec2 middleSlope(const Camera& camera, const Factorization& view) {
     return glm::clamp(glm::dvec2(ahead.y, ahead.z) / ahead.x, view.slopeMin, view.slopeMax);
 }
 
-// Base plane pixels that a slope of 1 takes: as many as the farthest slice has sheet pixels, which
-// is the most that there is to show, or fewer: as many as the picture needs, but at least as many
-// as there are voxels in the slice in the middle, or sheet pixels if those are fewer. What is
-// averaged before it is composited is not what is seen of it.
+// Base plane pixels per unit slope: the sheet pixels of the farthest slice, which show all, or, if
+// far fewer suffice, what the picture needs. That includes one per voxel (or sheet pixel, if fewer)
+// of the middle slice, because averaging before compositing changes the result.
 // @param view         of thin voxels
 // @param box          of all slices
-// @param sheetPixels  of a thin voxel
+// @param sheetPixels  per thin voxel
 double planeDensity(const Factorization& view, const IndexBox& box, double sheetPixels,
                     int within) {
     const double farthest = view.frontToBack ? box.max.x - view.eye->x : view.eye->x - box.min.x;
@@ -204,14 +198,14 @@ double planeDensity(const Factorization& view, const IndexBox& box, double sheet
     const double needed = std::max(kPixelsOfScreen * view.pixelsPerSlope,
                                    middle * std::min(sheetPixels, 1.0) / within);
     const double most = sheetPixels * std::max(farthest, 1.0);
-    // Reading sheets that are not averaged takes so much less time.
+    // Reading sheets without averaging saves that much time.
     constexpr double kWorthMore = 1.3;
     return most < kWorthMore * needed ? most : needed;
 }
 
-// A word costs much where voxels have looks of their own, for it is lit, and more than its voxels
-// do where these are written to pixels of their own, but they do cost: those of divided ones, whose
-// sheets are large, one by one.
+// Words of own looks are expensive, because they are lit. Otherwise a word costs more than its
+// voxels if these are written to single pixels; with the large sheets of divided voxels, each voxel
+// counts, too.
 Encoding encodingOf(Method method, bool hasLooks, bool hasPixels, bool isDivided) {
     switch (method) {
         case Method::kAuto:
@@ -225,34 +219,33 @@ Encoding encodingOf(Method method, bool hasLooks, bool hasPixels, bool isDivided
     }
 }
 
-// Whether slices have far more room than there are voxels. Then few of their pixels are made at a
-// time (plane_parts.h): of slices that are made anew those that show something there, of others all
-// from the first one on.
+// Whether slices have far more room than there are voxels. Parts of the picture (render_image.cpp)
+// then need only the visible slices if these are whole, but all slices from the first on otherwise.
 bool isMostlyEmpty(const Volume& volume, int sliceAxis) {
     constexpr double kLeast = 1 << 23;
-    const glm::dvec3 size = glm::dvec3(volume.box.max) - glm::dvec3(volume.box.min) + 1.0;
+    const glm::dvec3 size = glm::dvec3(volume.box().max) - glm::dvec3(volume.box().min) + 1.0;
     const double pixels = size[(sliceAxis + 1) % 3] * size[(sliceAxis + 2) % 3];
-    return pixels > std::max(kLeast, double(volume.activeCount));
+    return pixels > std::max(kLeast, double(volume.activeCount()));
 }
 
-// How finely the voxels of a picture are drawn: all of its views alike.
+// How finely all views of a picture are drawn.
 struct Fineness {
-    Subdivision parts;      // without slants and origin, which views have
-    double resolution = 1;  // sheet pixels of undivided voxels
+    Subdivision parts;      // without slants and origin, which depend on the view
+    double resolution = 1;  // sheet pixels per undivided voxel
 
-    // Sheet pixels of what voxels are divided into.
+    // Sheet pixels per part of a voxel.
     double thinResolution() const { return resolution / parts.within; }
 };
 
 Fineness finenessOf(const PreparedScene::Impl& scene, const Camera& camera,
                     const Factorization& view, bool keepsSlices, const Listener& listener) {
-    const IndexBox& box = scene.scene.volume->box;
+    const IndexBox& box = scene.scene.volume->box();
     const SplatOptions& options = scene.options;
     Fineness fineness;
     fineness.resolution = view.resolution;
     checkMostJoined(options.mostJoined);
     int between = 0;
-    // What is thin shows nothing else with more sheet pixels, while it is not smoothed.
+    // Extra sheet pixels change nothing visible in thin volumes, unless the footprint is smoothed.
     bool hasOnePixelEach = scene.isThin && hasOwnPixelIn(view, 1, 1);
     if (options.between) {
         between = *options.between;
@@ -275,11 +268,11 @@ Fineness finenessOf(const PreparedScene::Impl& scene, const Camera& camera,
     return fineness;
 }
 
-// What voxels are drawn as in a view.
+// The subdivision in a view.
 Subdivision partsIn(const Factorization& view, Subdivision parts, const Volume& volume) {
     if (parts.joined > 1) parts.slants = slantsOf(view, parts.joined, parts.joinedWithin).slants;
     // Whole blocks are divided.
-    if (parts.divides()) parts.origin = toSliceOrder(volume.box.min, view.sliceAxis) & ~7;
+    if (parts.divides()) parts.origin = toSliceOrder(volume.box().min, view.sliceAxis) & ~7;
     return parts;
 }
 
@@ -288,15 +281,14 @@ std::vector<Factorization> factorizeAll(const PreparedScene::Impl& scene, const 
     const Volume& volume = *scene.scene.volume;
     const std::optional<double> resolution = scene.options.resolution;
     if (camera.projection == Projection::kOrtho)
-        return {factorize(camera, volume.worldFromIndex, resolution)};
+        return {factorize(camera, volume.worldFromIndex(), resolution)};
     std::vector<Factorization> views =
-        factorizeRegions(camera, volume.box, volume.worldFromIndex, resolution, atSlopeSteps);
+        factorizeRegions(camera, volume.box(), volume.worldFromIndex(), resolution, atSlopeSteps);
     if (!views.empty()) return views;
     throw Error(ErrorCode::kUsage, "camera", "no lines of sight", "what makeCamera returns");
 }
 
-// How wide a voxel's footprint is in a view: 1 where it has a sheet pixel of its own and is seen in
-// no other. Empty: as wide as sigma asks for.
+// Width of a footprint: 1 if a voxel shows only in its own sheet pixel; empty: given by sigma.
 std::optional<int> footprintWidth(const SplatOptions& options, const Factorization& view,
                                   const Fineness& fineness) {
     if (options.footprintWidth || options.sigma) return options.footprintWidth;
@@ -304,15 +296,14 @@ std::optional<int> footprintWidth(const SplatOptions& options, const Factorizati
     return 1;
 }
 
-// @param width  as footprintWidth says
+// @param width  as footprintWidth
 Footprint footprintOf(const SplatOptions& options, const Camera& camera, const Factorization& view,
                       const Fineness& fineness, std::optional<int> width) {
     const int within = fineness.parts.within;
     const double pixels = view.pixelsPerVoxel / within;
     const double sigma =
         options.sigma.value_or(defaultSigma(pixels, fineness.thinResolution()) / within);
-    // The kernel is round in voxels, however many slices there are; seen along the middle line of
-    // sight.
+    // The kernel is round in voxels, whatever their slices; seen along the middle line of sight.
     const glm::dvec2 shift = view.eye ? middleSlope(camera, view) : view.shiftPerSlice;
     return makeFootprint(sigma, {shift.y, shift.x}, int(fineness.thinResolution()), width, within);
 }
@@ -330,7 +321,7 @@ Encoding encodingIn(const PreparedScene::Impl& scene, const Factorization& view,
 }
 
 // @param steps        of the view
-// @param hasOwnPixel  whether voxels are drawn to a sheet pixel each
+// @param hasOwnPixel  whether each voxel is drawn to a sheet pixel
 AxisPlan axisPlanOf(const PreparedScene::Impl& scene, const Factorization& view, double steps,
                     const Subdivision& parts, bool hasOwnPixel, DrawnFor drawnFor) {
     AxisPlan plan;
@@ -338,13 +329,12 @@ AxisPlan axisPlanOf(const PreparedScene::Impl& scene, const Factorization& view,
     key.sliceAxis = view.sliceAxis;
     key.parts = parts;
     key.encoding = encodingIn(scene, view, hasOwnPixel, parts.divides());
-    // From an eye slabs are as long as they are, whatever is in them: what is seen is all that may
-    // be packed. What is held depends on all that lies before it.
+    // From an eye, slab lengths must not depend on the content, because only the visible part may
+    // be packed. Held voxels depend on all voxels in front of them.
     key.slabLength = view.eye ? SlabLength::kShortest : SlabLength::kByCounts;
-    // Slices are walked from the front on. Whole ones do not depend on it.
+    // Slices are walked from the front on; whole slices work both ways.
     plan.descending = !view.frontToBack && key.encoding != Encoding::kWhole;
-    // Of joined ones, what they look like does; of several colours, unless they are pairs, also how
-    // long steps are.
+    // Joined looks depend on the direction and, with several colours, on steps (except pairs).
     const bool isJoined = parts.joined > 1;
     const bool areSums = scene.hasOneColor() && parts.joinedWithin == 1;
     const bool isOfSteps = isJoined && !areSums && (parts.joined > 2 || !scene.canPairSlices());
@@ -356,8 +346,8 @@ AxisPlan axisPlanOf(const PreparedScene::Impl& scene, const Factorization& view,
     return plan;
 }
 
-// What of the volume a view from an eye may show.
-// @param plan  all but its axis' `seen`
+// The part of the volume that a view from an eye may show.
+// @param plan  complete except its axis' `seen`
 SeenCone seenCone(const ViewPlan& plan, int within) {
     const Factorization& view = plan.view;
     SeenCone cone;
@@ -368,7 +358,7 @@ SeenCone seenCone(const ViewPlan& plan, int within) {
     const double border = (planeBorder(plan.thin, plan.slopeSpacing) + 3) * cone.reachPerSlice;
     cone.slopeMin = view.slopeMin - border;
     cone.slopeMax = view.slopeMax + border;
-    // What is joined lies up to a voxel beside what it is made of, and what is mixed next to it.
+    // Joined voxels lie up to one voxel away from their parts, and mixed ones next to them.
     constexpr double kBeside = 2;
     const double sheetPixels = plan.footprint.resolution;
     cone.reach = (plan.footprint.reach() + 2) / sheetPixels / within + kBeside;
@@ -387,7 +377,7 @@ ViewPlan viewPlanOf(const PreparedScene::Impl& scene, const Camera& camera,
     plan.axis = axisPlanOf(scene, view, plan.steps, parts, width == 1, drawnFor);
     if (volume.empty()) return plan;
     plan.footprint = footprintOf(scene.options, camera, view, fineness, width);
-    const IndexBox box = boxOfSlices(volume.box, view.sliceAxis, parts);
+    const IndexBox box = boxOfSlices(volume.box(), view.sliceAxis, parts);
     plan.sheet = layoutSheet(box, plan.footprint);
     if (!view.eye) return plan;
     plan.slopeSpacing = 1 / planeDensity(plan.thin, box, plan.footprint.resolution, parts.within);
@@ -401,9 +391,10 @@ ViewPlan viewPlanOf(const PreparedScene::Impl& scene, const Camera& camera,
 
 double stepsOf(const Factorization& view, const Volume& volume) {
     if (view.eye) return view.steps;
-    // Rounding makes no straight view an oblique one.
+    // Rounding must not turn a straight view into an oblique one.
     constexpr double kSame = 1e-12;
-    const double steps = view.sliceStepWorld / planeDistance(volume.worldFromIndex, view.sliceAxis);
+    const double steps =
+        view.sliceStepWorld / planeDistance(volume.worldFromIndex(), view.sliceAxis);
     return std::abs(steps - 1) < kSame ? 1 : steps;
 }
 
@@ -420,8 +411,8 @@ DrawPlan planPicture(const PreparedScene::Impl& scene, const Camera& camera, Dra
     Fineness fineness =
         finenessOf(scene, camera, views.front(), drawnFor == DrawnFor::kDepths, listener);
     if (fineness.parts.joined > 1 && views.front().eye) {
-        // Slices are joined along lines of sight, as far as whole voxels are; of several colours,
-        // where steps are nearly as long as those that pairs are mixed for.
+        // Slices are joined along lines of sight, by whole voxels. With several colours, steps must
+        // be close to those that pairs are mixed for.
         constexpr double kMostRange = 1.3;
         std::vector<Factorization> atSlopes = factorizeAll(scene, camera, true);
         const bool areAlike =

@@ -14,46 +14,42 @@
 
 namespace deltasplat {
 
-/// Volumes of fewer active voxels are drawn slice by slice: a few milliseconds are all that could
-/// be saved. Tests make it less.
+/// Volumes with fewer active voxels are drawn slice by slice, at little cost. Tests lower it.
 inline std::atomic<std::uint64_t> leastVoxelsJoined{std::uint64_t{1} << 23};
 
-/// How one view of a picture is drawn: one of parallel lines of sight, or a region of an eye's.
+/// Plan of one view: of parallel lines of sight, or of a region seen by an eye.
 struct ViewPlan {
     Factorization view;         ///< of the volume's own voxels
-    Factorization thin;         ///< of what these are divided into, or joined to
-    AxisPlan axis;              ///< of the words that slabs are rendered from
-    double steps = 1;           ///< as stepsOf(view): that the picture's colours are for
-    Footprint footprint;        ///< of one of those voxels
-    SheetLayout sheet;          ///< of all slices, of four channels; empty for an empty volume
-    double slopeSpacing = 0.0;  ///< from an eye: from a pixel of the base plane to the next
+    Factorization thin;         ///< of divided or joined voxels
+    AxisPlan axis;              ///< of the words for the slabs
+    double steps = 1;           ///< stepsOf(view), for the colours
+    Footprint footprint;        ///< of a divided or joined voxel
+    SheetLayout sheet;          ///< of all slices, with four channels; empty for an empty volume
+    double slopeSpacing = 0.0;  ///< from an eye: slope between pixels of the base plane
 };
 
-/// What a picture's words and layers are used for.
 enum class DrawnFor {
     kPixels,  ///< one picture, perhaps with words of a few slabs at a time
     kSlabs,   ///< slabs that are rendered one by one
-    kDepths   ///< cuts in depth: each slice has to be drawn by itself
+    kDepths   ///< cuts in depth: each slice is drawn by itself
 };
 
-/// How a picture is drawn. Made once for a scene and a camera, and changed by nobody.
+/// How a picture is drawn: constant for a scene and a camera.
 struct DrawPlan {
-    std::vector<ViewPlan> views;  ///< one, or one for each region of what an eye sees
+    std::vector<ViewPlan> views;  ///< one, or one for each region seen by an eye
 
-    /// Slices that are drawn as one.
     int joined() const { return views.front().axis.key.parts.joined; }
 };
 
-/// @throw Error(kUsage) for options out of range, a division that is asked for and cannot be made,
-///        and a camera that makeCamera did not return; Error(kFailed) for a volume too wide
+/// @throw Error(kUsage) for options out of range, an impossible division, or a camera not from
+///        makeCamera; Error(kFailed) for a volume too wide
 DrawPlan planPicture(const PreparedScene::Impl& scene, const Camera& camera, DrawnFor drawnFor,
                      const Listener& listener);
 
-/// Of a view, how long the way from one slice to the next is that colours are for, as a multiple of
-/// the straight one; from an eye, each pixel has its own.
+/// Length of the view's steps for colours, in straight steps. From an eye, each pixel has its own.
 double stepsOf(const Factorization& view, const Volume& volume);
 
-/// Returns the index position (x, y, z) that lines of sight of a view begin at.
+/// Returns the index position (x, y, z) of a view's eye.
 /// @param eye  as Factorization::eye
 glm::dvec3 indexOfEye(const glm::dvec3& eye, int sliceAxis);
 

@@ -28,22 +28,22 @@
 namespace deltasplat {
 namespace {
 
-// What a box of blocks costs to be drawn, in blocks: its three faces are sheets and layers, and
-// beside these a picture takes something for every slice and for itself.
+// Cost of drawing a box of blocks, in blocks: its three faces are sheets and layers; every slice
+// and the picture itself cost something, too.
 double costOf(const IndexBox& blocks) {
     constexpr double kBlocksPerSlice = 512;
     const glm::dvec3 d = glm::dvec3(blocks.max) - glm::dvec3(blocks.min) + 1.0;
     return d.x * d.y + d.y * d.z + d.z * d.x + kBlocksPerSlice * (d.x + d.y + d.z);
 }
 
-// Boxes that cost less are drawn as one: about 3000 voxels a side, or 16000 along one.
+// Cheaper boxes are drawn as one: about 3000 voxels a side, or 16000 along one.
 constexpr double kLeastCost = 1 << 20;
-// Groups that cost less are not divided.
+// Cheaper groups are not divided.
 constexpr double kSmallGroup = 1 << 16;
-// Blocks that lie between groups, at least: more than anything reaches that a voxel is drawn with.
+// Least gap between groups in blocks, wider than the reach of any voxel's footprint.
 constexpr int kLeastGap = 16;
 constexpr std::size_t kMostGroups = 4096;
-// How many pieces may be sorted for it all.
+// Limit of the pieces sorted for all splits together.
 constexpr std::size_t kMostWork = 20'000'000;
 
 IndexBox blocksOf(const IndexBox& voxels) {
@@ -55,11 +55,11 @@ IndexBox blocksOf(const IndexBox& voxels) {
     return blocks;
 }
 
-// The widest gap along an axis that no piece reaches into.
+// The widest gap between pieces along an axis.
 struct Gap {
     std::int64_t blocks = 0;
     int axis = 0;
-    int before = 0;  // the last block before it
+    int before = 0;  // the last block before the gap
 };
 
 std::string rangesText(const IndexBox& box) {
@@ -81,24 +81,23 @@ std::string roundedText(double number) {
 
 }  // namespace
 
-// What groups are made of.
 struct FarGroups::Impl {
-    // A leaf, a tile, or a block that is added; in blocks of 8x8x8 voxels, both ends inclusive.
+    // A leaf, a tile, or an added block, in blocks of 8x8x8 voxels, both ends inclusive.
     struct Piece {
         glm::ivec3 first{0};
         glm::ivec3 last{0};
         const CodeTree::Leaf* leaf = nullptr;
-        int level = 0;  // of a tile; 0: none
+        int level = 0;  // of a tile; 0: no tile
         Code code = 0;
     };
-    // Of the tree that planes cut space into.
+    // A node of the tree of planes.
     struct Node {
-        std::size_t begin = 0;  // its pieces
+        std::size_t begin = 0;  // of the node's pieces
         std::size_t end = 0;
         IndexBox blocks;
-        int axis = -1;        // that its plane cuts; -1: it is a group
-        double plane = 0;     // a voxel index between both sides
-        std::size_t low = 0;  // nodes, or, of a group, its number
+        int axis = -1;        // across the plane; -1: the node is a group
+        double plane = 0;     // voxel index, between both sides
+        std::size_t low = 0;  // nodes, or the number of a group
         std::size_t high = 0;
     };
     struct Group {
@@ -121,22 +120,23 @@ struct FarGroups::Impl {
     const Volume& volume;
     std::optional<IndexBox> moreBox;
     std::vector<Piece> pieces;
-    std::vector<Node> nodes;  // the first is of all
+    std::vector<Node> nodes;  // the first holds all pieces
     std::vector<Group> groups;
 };
 
 std::optional<FarGroups> FarGroups::find(const Volume& volume, const BlockSet* more) {
-    if (volume.empty() || !volume.codes) return {};
-    const double cost = costOf(blocksOf(volume.box));
-    // Of voxels that are many, groups are no smaller.
+    if (volume.empty() || !volume.codes()) return {};
+    const double cost = costOf(blocksOf(volume.box()));
+    // With many voxels, groups would not be cheaper.
     constexpr double kVoxelsOfBlock = 512;
     constexpr double kWorth = 2;
-    if (cost < kLeastCost || kWorth * double(volume.activeCount) / kVoxelsOfBlock > cost) return {};
+    if (cost < kLeastCost || kWorth * double(volume.activeCount()) / kVoxelsOfBlock > cost)
+        return {};
     auto impl = std::make_shared<Impl>(volume);
     impl->listPieces(more);
     if (impl->pieces.empty()) return {};
     impl->splitAll();
-    // It may be a single one: cuts leave voxels in a box that was for others.
+    // Even a single group may be worth it: cuts leave voxels in a box made for more.
     if (kWorth * impl->joinWhereCheaper() > cost) return {};
     impl->numberGroups();
     return FarGroups(std::move(impl));
@@ -166,7 +166,7 @@ void FarGroups::Impl::splitAll() {
 }
 
 void FarGroups::Impl::listPieces(const BlockSet* more) {
-    const CodeTree::Tree& tree = volume.codes->nodes();
+    const CodeTree::Tree& tree = volume.codes()->nodes();
     const auto positionOf = [](const openvdb::Coord& voxel) {
         return glm::ivec3(voxel.x() >> 3, voxel.y() >> 3, voxel.z() >> 3);
     };
@@ -198,7 +198,6 @@ FarGroups::Impl::Node FarGroups::Impl::nodeOf(std::size_t begin, std::size_t end
     return node;
 }
 
-// Divides a node at its widest gap, unless there is none.
 bool FarGroups::Impl::split(std::size_t number) {
     const Node node = nodes[number];
     Gap widest;
@@ -233,7 +232,7 @@ bool FarGroups::Impl::split(std::size_t number) {
     return true;
 }
 
-// Makes one group of what costs more as several, and returns what all cost.
+// Undoes divisions that do not pay, and returns the cost of all groups.
 double FarGroups::Impl::joinWhereCheaper() {
     std::vector<double> least(nodes.size());
     for (std::size_t i = nodes.size(); i-- > 0;) {
@@ -264,7 +263,7 @@ void FarGroups::Impl::numberGroups() {
     }
 }
 
-// The box of voxels that pieces have.
+// The box of the pieces' voxels.
 IndexBox FarGroups::Impl::boxOf(std::size_t begin, std::size_t end) const {
     openvdb::CoordBBox voxels;
     IndexBox added;
@@ -304,10 +303,10 @@ Volume FarGroups::volume(std::size_t number) const {
     std::vector<const CodeTree::Leaf*> leaves;
     for (std::size_t i = group.begin; i < group.end; ++i)
         if (impl_->pieces[i].leaf) leaves.push_back(impl_->pieces[i].leaf);
-    impl_->volume.codes->readLeaves(leaves);
+    impl_->volume.codes()->readLeaves(leaves);
     requireMemory("codes of a group of voxels",
                   double(sizeof(CodeTree::Leaf) + 512 * sizeof(Code)) * double(leaves.size()));
-    Volume volume = impl_->volume;
+    VolumeData volume = impl_->volume.data();
     auto codes = std::make_shared<CodeTree>();
     for (std::size_t i = group.begin; i < group.end; ++i) {
         const Impl::Piece& piece = impl_->pieces[i];
@@ -322,25 +321,25 @@ Volume FarGroups::volume(std::size_t number) const {
     volume.codes = std::move(codes);
     volume.box = group.box;
     volume.activeCount = std::max<std::uint64_t>(impl_->voxelsOf(group), 1);
-    return volume;
+    return Volume(std::move(volume));
 }
 
 bool FarGroups::Seen::isNothing() const {
-    // Smaller shares of a pixel are lost in the opacity of a 32-bit float.
+    // Smaller shares of a pixel are lost in a 32-bit opacity.
     constexpr double kLeastPixels = 0x1p-26;
     return part.empty() || size.x * size.y < kLeastPixels;
 }
 
 FarGroups::Seen FarGroups::seenBy(const Camera& camera, std::size_t number) const {
-    // What footprints reach.
+    // Reach of footprints.
     constexpr double kAround = 8;
     const SeenBox seen =
-        seenBox(impl_->groups[number].box, impl_->volume.worldFromIndex, camera, kAround);
+        seenBox(impl_->groups[number].box, impl_->volume.worldFromIndex(), camera, kAround);
     return {seen.part, seen.size};
 }
 
 std::vector<std::size_t> FarGroups::frontToBack(const Camera& camera) const {
-    const glm::dmat4& world = impl_->volume.worldFromIndex;
+    const glm::dmat4& world = impl_->volume.worldFromIndex();
     const glm::dmat3 indexFromWorld = glm::inverse(glm::dmat3(world));
     const bool isParallel = camera.projection == Projection::kOrtho;
     const glm::dvec3 ahead = indexFromWorld * camera.direction;
@@ -361,13 +360,13 @@ std::vector<std::size_t> FarGroups::frontToBack(const Camera& camera) const {
     return order;
 }
 
-// The longest diagonal of a box of voxels, with one around it.
+// The longest diagonal of a box of voxels, with a margin of one voxel.
 double FarGroups::Impl::widthWorld(const IndexBox& box) const {
     double width = 0;
     for (int i = 0; i < 4; ++i) {
         const glm::dvec3 diagonal = cornerOf(box, 7 - i) - cornerOf(box, i) +
                                     glm::dvec3(i & 1 ? -2 : 2, i & 2 ? -2 : 2, i & 4 ? -2 : 2);
-        width = std::max(width, glm::length(glm::dmat3(volume.worldFromIndex) * diagonal));
+        width = std::max(width, glm::length(glm::dmat3(volume.worldFromIndex()) * diagonal));
     }
     return width;
 }
@@ -387,12 +386,12 @@ bool FarGroups::warnOfDots(const Camera& camera, const Listener& listener) const
                                               return impl_->voxelsOf(a) < impl_->voxelsOf(b);
                                           });
     const double share =
-        100.0 * double(impl_->voxelsOf(*largest)) / double(impl_->volume.activeCount);
+        100.0 * double(impl_->voxelsOf(*largest)) / double(impl_->volume.activeCount());
     const glm::dvec3 middle(
-        impl_->volume.worldFromIndex *
+        impl_->volume.worldFromIndex() *
         glm::dvec4(0.5 * (glm::dvec3(largest->box.min) + glm::dvec3(largest->box.max)), 1));
     std::string shownBy;
-    // From an eye it takes another eye.
+    // A perspective view would need another eye.
     if (camera.projection == Projection::kOrtho) {
         shownBy = ", and `targetWorld` " + numberText(middle) + " with `frameWidthWorld` " +
                   roundedText(impl_->widthWorld(largest->box)) + " shows";

@@ -19,26 +19,24 @@ namespace {
 
 using Lights = std::vector<glm::dvec4>;
 
-// Returns the lines of sight from an eye at a voxel (x, y, z), along the axis that they belong to.
-// @param lights  [axis]
+// Returns the lines of sight from an eye at a voxel (x, y, z), along their most parallel axis.
 SightLines linesFrom(const glm::dvec3& eye, const glm::ivec3& voxel,
                      const std::array<Lights, 3>& lights) {
     const glm::dvec3 along = glm::dvec3(voxel) - eye;
     const int axis = mostParallelAxis(along);
     const glm::ivec3 order = sliceOrder(axis);
     const glm::dvec3 steps(along[order[0]], along[order[1]], along[order[2]]);
-    // From within a voxel it is seen any way.
+    // From within a voxel, any direction will do.
     const double slices = steps.x == 0 ? 1 : steps.x;
     return {axis, slices > 0, glm::dvec2(-steps.y, -steps.z) / slices, lights[std::size_t(axis)]};
 }
 
-// The axis that voxels are chosen along: from an eye the same one, whichever regions a picture
-// shows and however the volume is stored.
+// The axis of the probe: from an eye always the same, whatever regions and storage.
 int axisOf(const Factorization& view) {
     return view.eye ? 2 : view.sliceAxis;
 }
 
-// Returns all that lines of sight depend on, and what may become one, as bits.
+// Returns the bits of all that lines of sight and the result depend on.
 std::vector<std::uint64_t> keyOf(const Factorization& view, const Volume& volume,
                                  const std::vector<JoinedVoxels>& some) {
     std::vector<double> numbers;
@@ -56,7 +54,6 @@ std::vector<std::uint64_t> keyOf(const Factorization& view, const Volume& volume
     return bits;
 }
 
-// Whether a change may be seen.
 bool isSeen(const JoinedChange& change) {
     constexpr double kMostGained = 1.0 / 64;
     constexpr double kMostRms = 1.0 / 32;
@@ -70,16 +67,15 @@ bool isSeen(const JoinedChange& change) {
 JoinJudge::Axis::Axis(const PreparedScene::Impl& scene, int ofAxis)
     : sliceAxis(ofAxis),
       classes(scene.straightClasses(ofAxis)),
-      probe(listBlocks(*scene.scene.volume->codes, ofAxis, classes.classOfSlot()), ofAxis,
+      probe(listBlocks(*scene.scene.volume->codes(), ofAxis, classes.classOfSlot()), ofAxis,
             classes.classOfSlot()) {}
 
 JoinedVoxels JoinJudge::firstUnseen(const std::vector<JoinedVoxels>& some, const Axis& axis,
                                     const Volume& volume, const Factorization& view) {
-    // Of each axis that lines of sight go along. From an eye the ways through slices are straight
-    // ones: others are up to 1.7 times as long, where voxels are cubes.
+    // Per axis. From an eye, steps count as straight; in cubic voxels some are 1.7 times as long.
     std::array<Lights, 3> lights;
     const auto lightsAlong = [&](int sliceAxis, double steps) {
-        const double distance = planeDistance(volume.worldFromIndex, sliceAxis);
+        const double distance = planeDistance(volume.worldFromIndex(), sliceAxis);
         return lightsOf(axis.classes.atSteps(steps * distance / axis.classes.stepWorld));
     };
     JoinProbe::LinesThrough lines;
@@ -119,7 +115,7 @@ JoinedVoxels JoinJudge::firstUnseen(const std::vector<JoinedVoxels>& some,
         if (!axis_) axis_ = std::make_unique<const Axis>(scene, axis);
         unseen = firstUnseen(some, *axis_, volume, view);
     });
-    // Blocks will be listed again, of what is seen, when they are packed.
+    // Packing lists blocks again anyway.
     if (scene.isForOne) axis_ = nullptr;
     if (known_.size() >= kMostKnown) known_.clear();
     known_.emplace(std::move(key), unseen);

@@ -15,19 +15,18 @@
 
 namespace deltasplat {
 
-/// Judges, for one scene, whether pictures show that slices, or voxels beside each other, become
-/// one. Thread-safe.
+/// Judges for a scene whether joined slices or voxels look different. Thread-safe.
 class JoinJudge {
   public:
-    /// Returns the first of some that is known to change light and opacity little, on average and
-    /// from place to place (JoinedChange); else single voxels. Nothing but lines of sight counts,
-    /// neither a picture's frame nor what was asked before: so parts of a picture are drawn alike.
-    /// @param view  of the volume's own voxels, the first of the picture's
+    /// Returns the first candidate that changes light and opacity little, on average and locally
+    /// (JoinedChange); else single voxels. Depends on lines of sight only, not on a picture's frame
+    /// or on earlier calls, so that parts of a picture are drawn alike.
+    /// @param view  of the volume's own voxels, the first of the picture
     JoinedVoxels firstUnseen(const std::vector<JoinedVoxels>& some,
                              const PreparedScene::Impl& scene, const Factorization& view) const;
 
   private:
-    // What can be seen, in the order of one slice axis.
+    // The visible voxels, in the order of one slice axis.
     struct Axis {
         Axis(const PreparedScene::Impl& scene, int sliceAxis);
 
@@ -41,7 +40,7 @@ class JoinJudge {
                                     const Volume& volume, const Factorization& view);
 
     mutable std::mutex mutex_;
-    mutable std::unique_ptr<const Axis> axis_;  // that was asked for last
+    mutable std::unique_ptr<const Axis> axis_;  // of the last call
     mutable std::map<Key, JoinedVoxels> known_;
 };
 

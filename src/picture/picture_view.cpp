@@ -22,7 +22,7 @@ namespace deltasplat {
 
 namespace {
 
-// The covariance of where a voxel is seen in a footprint, in voxels: uu, vv and uv.
+// The covariance of a voxel's footprint, in voxels: uu, vv and uv.
 glm::dvec3 covarianceOf(const Footprint& footprint) {
     glm::dvec3 products(0);
     for (int y = 0; y < footprint.width; ++y) {
@@ -31,13 +31,12 @@ glm::dvec3 covarianceOf(const Footprint& footprint) {
             products += double(footprint.at(x, y)) * glm::dvec3(away * away, away.x * away.y);
         }
     }
-    // Weights of each of the phases add up to one.
+    // The weights of each phase sum to one.
     const double phases = footprint.resolution * footprint.resolution;
     return products / (double(Footprint::kOne) * phases * phases);
 }
 
-// What reading sheets between their pixels adds to that: on average, as lines of sight lie anywhere
-// between, but where all of them meet pixels.
+// Average covariance added by reading between sheet pixels; 0 if all lines of sight meet pixels.
 glm::dvec3 covarianceOfReading(const Factorization& view, double sheetPixels) {
     glm::dvec3 covariance(0);
     for (int i = 0; i < 2; ++i) {
@@ -76,7 +75,7 @@ PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
                                  ? axis_->classes()
                                  : axis_->classes().atSteps(plan_.steps / axisSteps);
         const LitScene lit{camera,
-                           scene.scene.volume->worldFromIndex *
+                           scene.scene.volume->worldFromIndex() *
                                indexFromThinVoxel(axis_->sliceAxis(), axis_->parts()),
                            covarianceOf(plan_.footprint) +
                                covarianceOfReading(plan_.thin, plan_.footprint.resolution),
@@ -100,7 +99,7 @@ PictureView::PictureView(const PreparedScene::Impl& scene, const Camera& camera,
 }
 
 glm::dmat4 PictureView::worldFromSlices() const {
-    return scene_.scene.volume->worldFromIndex * indexFromThinVoxel(axis_->sliceAxis(), {});
+    return scene_.scene.volume->worldFromIndex() * indexFromThinVoxel(axis_->sliceAxis(), {});
 }
 
 PlanePlace PictureView::placePlane() const {
@@ -117,7 +116,7 @@ PlanePlace PictureView::placePlane() const {
         place.offsetPixels = layout_.offsetPixels;
     }
     place.filter = scene_.options.filter;
-    // Of one colour, every channel is a fixed share of the opacity.
+    // With one colour, every channel is a fixed share of the opacity.
     const ClassTable& classes = colors_ ? colors_->table() : axis_->colors.table();
     if (classes.oneColor) place.color = glm::dvec3(classes.scale) / classes.scale.a;
     return place;
@@ -196,8 +195,7 @@ double PlaneView::showPart(const Layer& finished, const PicturePart& part,
 
 PlaneBox PlaneView::readBy(const PixelBox& pixels) const {
     if (place_.view.eye) return readByRegion(camera_, place_.view, place_.thin, plane_, pixels);
-    // As many times as a filter is wide, it reaches twice; the rest is what halving takes, and taps
-    // that are read besides (warp.cpp).
+    // A filter reaches twice its stretch; the rest allows for halving and padding taps (warp.cpp).
     constexpr double kReach = 5;
     constexpr double kLeast = 16;
     constexpr double kFar = 1 << 30;
@@ -215,7 +213,7 @@ PlaneBox PlaneView::readBy(const PixelBox& pixels) const {
             glm::ivec2(glm::clamp(glm::ceil(high + reach), -kFar, kFar))};
 }
 
-// Opacities are those of ways straight through the slices: makes them those of the lines of sight.
+// Turns opacities of straight steps through slices into those of the lines of sight.
 void PlaneView::lengthenSteps(Layer& layer) const {
     parallelForChunks(std::size_t(layer.box.size().y), [&](std::size_t begin, std::size_t end) {
         std::vector<float> steps;

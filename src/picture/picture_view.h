@@ -24,7 +24,7 @@
 
 namespace deltasplat {
 
-/// @throw Error(kUsage) unless an image has the size of a part of a picture of `size`
+/// @throw Error(kUsage) unless the image has the size of `part`, within a picture of `size`
 inline void requirePart(const PixelBox& part, glm::ivec2 size, const Image& image) {
     const auto text = [](const PixelBox& box) {
         return dimsText(box.size()) + " pixels from " + std::to_string(box.min.x) + "," +
@@ -43,41 +43,39 @@ inline void requirePart(const PixelBox& part, glm::ivec2 size, const Image& imag
                 dimsText(part.size()) + ", those of the part");
 }
 
-/// Where the base plane of a view lies, in plain numbers.
+/// The place of a view's base plane, in plain numbers.
 struct PlanePlace {
-    Factorization view;        ///< of the volume's own voxels
-    Subdivision parts;         ///< what these are divided into
-    Factorization thin;        ///< of those: subdivided(view, parts)
-    int firstSlice = 0;        ///< as SheetLayout::firstSlice
-    glm::ivec2 firstVoxel{0};  ///< as SheetLayout::firstVoxel
-    double resolution = 1;     ///< parallel: sheet pixels a voxel
-    double offsetPixels = 0;   ///< parallel: as SheetLayout::offsetPixels
-    double spacing = 1;        ///< from an eye: from one pixel to the next, in slopes
+    Factorization view;                                 ///< of the volume's own voxels
+    Subdivision parts;                                  ///< how these are divided
+    Factorization thin;                                 ///< of the parts: subdivided(view, parts)
+    int firstSlice = 0;                                 ///< as SheetLayout::firstSlice
+    glm::ivec2 firstVoxel{0};                           ///< as SheetLayout::firstVoxel
+    double resolution = 1;                              ///< parallel: sheet pixels per voxel
+    double offsetPixels = 0;                            ///< parallel: as SheetLayout::offsetPixels
+    double spacing = 1;                                 ///< from an eye: slope between pixels
     PictureFilter filter = PictureFilter::kCatmullRom;  ///< as SplatOptions::filter
-    /// The colour that opacity 1 has, where opacity is all that layers hold.
+    /// The colour of opacity 1, if layers hold opacity only.
     std::optional<glm::dvec3> color;
 };
 
-/// How the base plane of a view is seen: all that showing it takes once its slabs are rendered,
-/// whoever did that.
+/// All that is needed to show the base plane of a view once its slabs are rendered.
 class PlaneView {
   public:
     PlaneView(const Camera& camera, const PlanePlace& place);
 
     const PlanePlace& place() const { return place_; }
     const BasePlane& plane() const { return plane_; }
-    /// Makes of a layer, once, what showPart() shows.
+    /// Prepares a layer for showPart(). Call it once per layer.
     void finish(Layer& layer) const;
     /// Whether finish() changes the layer.
     bool finishChangesLayer() const { return place_.view.eye && place_.color; }
-    /// Writes what is seen of a finished layer into a part of the picture: into all pixels of a
-    /// parallel view, and into those of the region, where it is not empty, of one from an eye.
-    /// @param whole  where the layer is a part of a larger one: that one's box. The part shows the
-    ///               same if it has what readBy() says.
-    /// @return the most that this can enlarge a difference of layers
+    /// Writes a finished layer into a part of the picture: into all pixels of a parallel view, or
+    /// into those of the eye's region where the layer is not empty.
+    /// @param whole  box of the larger layer, if `finished` is a part, which must include readBy()
+    /// @return how much this can enlarge a difference of layers at most
     double showPart(const Layer& finished, const PicturePart& part,
                     const PlaneBox& whole = {}) const;
-    /// Returns the base plane's pixels that showing some of the picture's may read, and more.
+    /// Returns a box of base plane pixels that includes all that showing `pixels` reads.
     PlaneBox readBy(const PixelBox& pixels) const;
 
   private:
@@ -89,19 +87,18 @@ class PlaneView {
     BasePlane plane_;
 };
 
-/// @throw Error(kUsage) if the image has not the camera's size
+/// @throw Error(kUsage) unless the image has the camera's size
 void requireSize(const Camera& camera, const Image& image);
 
-/// A view of a picture, of a volume that is not empty: what its slabs are made of, how they lie on
-/// the base plane, and how that is seen.
+/// A view of a picture of a volume that is not empty: its slabs and its base plane.
 class PictureView {
   public:
-    /// @param scene,camera  must outlive it
-    /// @param axis    that the plan asks for
+    /// @param scene,camera  must outlive the view
+    /// @param axis    the plan's axis
     /// @param memory  for layers and sheets
     PictureView(const PreparedScene::Impl& scene, const Camera& camera, const ViewPlan& plan,
                 std::shared_ptr<const PreparedAxis> axis, KeptMemory& memory);
-    // What slabs are made of refers to it.
+    // Slabs refer to this object.
     PictureView(const PictureView&) = delete;
     PictureView& operator=(const PictureView&) = delete;
 
@@ -111,14 +108,12 @@ class PictureView {
     const PlaneView& plane() const { return *plane_; }
     /// From (slice, u, v) of the volume's own voxels to the world.
     glm::dmat4 worldFromSlices() const;
-    /// Writes what is seen of the base plane into a part of the picture. Changes the layer on the
-    /// way.
+    /// Writes the base plane into a part of the picture. May change the layer.
     /// @param whole  as PlaneView::showPart
-    /// @return the most that this can enlarge a difference of layers
+    /// @return how much this can enlarge a difference of layers at most
     double show(Layer& layer, const PicturePart& part, const PlaneBox& whole = {}) const;
-    /// Whether show() changes the layer.
     bool showChangesLayer() const { return plane_->finishChangesLayer(); }
-    /// Most that a layer may differ from the exact one.
+    /// Largest difference of a layer from the exact layer.
     ErrorBound errorBound() const;
 
   private:
@@ -128,8 +123,8 @@ class PictureView {
     const Camera& camera_;
     ViewPlan plan_;
     std::shared_ptr<const PreparedAxis> axis_;
-    std::optional<StepColors> colors_;        // if the axis' are those of other steps, or not lit
-    std::optional<DigitVoxels> digitVoxels_;  // of several digits, without own colours
+    std::optional<StepColors> colors_;        // if the axis' colours are for other steps or unlit
+    std::optional<DigitVoxels> digitVoxels_;  // with several digits and no own colours
     SheetLayout layout_;
     std::optional<PlaneView> plane_;
     std::optional<SlabInput> slabs_;

@@ -26,8 +26,7 @@
 namespace deltasplat {
 namespace {
 
-// Optics as the volume has them, for levels to be seen by. Where a painter knows all colours,
-// classes tell opacities apart, nothing else.
+// Returns the optics with a range; if a painter gives all colours, with opacities only.
 Optics opticsOf(const Volume& volume, Optics optics, const VoxelPainter* painter) {
     if (!optics.range) optics.range = defaultRange(volume);
     if (painter && !painter->needsColors()) optics.transferFunction.colors = {{0, glm::dvec3(1)}};
@@ -39,29 +38,27 @@ Scene requireVolume(Scene scene) {
     throw Error(ErrorCode::kUsage, "scene", "no volume", "one");
 }
 
-// Whether what is shown is thin. Of thin voxels, two sheet pixels show little that one does not,
-// and values mixed little more (docs/decisions.md). Not what is seen decides, lest a voxel or an
-// angle change the picture of all others.
+// Whether the volume is thin. In thin volumes two sheet pixels per voxel show little more than one,
+// and mixed values little more (docs/decisions.md). The decision ignores the visible voxels, so
+// that no single voxel or angle changes the whole picture.
 bool showsThin(const Volume& volume, const Optics& optics) {
     constexpr double kMost = 0.25;
     return !optics.surface && largestAlpha(volume, optics) <= kMost;
 }
 
-// Whether steps that are so many times shorter may be too short for some class to be seen. What is
-// seen must not depend on which picture of a scene comes first.
+// Whether shorter steps may hide a class. Visibility must not depend on the scene's first picture.
 bool shorterMayShowLess(const ClassTable& classes, double times) {
-    // The share of the largest opacity that is sure to be seen (ClassTable), and twice that, for
-    // rounding. A class shrinks by `times` at most, and the largest does not grow.
+    // Twice the share of the largest opacity that is sure to be seen (ClassTable), for rounding. A
+    // class shrinks by `times` at most, and the largest does not grow.
     const double sure = 2 * 0x1p-40 * ClassTable::kMax * times;
-    // On one plane there is nothing below 2^-20 of the largest.
+    // One plane holds nothing below 2^-20 of the largest.
     if (classes.planes.size() == 1 && sure < 0x1p-20 * ClassTable::kMax) return false;
     for (std::size_t number = 1; number < classes.size(); ++number)
         if (classes.unitsOf(Slot(number)).a < sure) return true;
     return false;
 }
 
-// Returns how opaque a voxel of each class is along its shortest side: what is mixed must depend on
-// no camera.
+// Returns the opacity of classes along a voxel's shortest side: mixing must ignore the camera.
 std::vector<float> opacitiesOf(const Volume& volume, const ClassTable& classes) {
     const double side = smallestSize(volume) / classes.unitDistanceWorld * classes.extinctionScale;
     std::vector<float> opacities;
@@ -72,7 +69,7 @@ std::vector<float> opacitiesOf(const Volume& volume, const ClassTable& classes) 
     return opacities;
 }
 
-// Says so where looks of joined slices had to be rounded so far that it may be seen.
+// Warns if rounding the looks of joined slices may be visible.
 void warnOfRounding(const SliceJoiner& joiner, const Listener& listener) {
     constexpr int kFewBits = 4;
     if (!joiner.looks()) return;
@@ -82,11 +79,9 @@ void warnOfRounding(const SliceJoiner& joiner, const Listener& listener) {
                   std::to_string(1 << bits) + " levels a channel; `between` 0 draws every voxel");
 }
 
-// Returns the words that other optics have, if these tell the same codes apart, or null; classes
-// then get the others' numbers. Where nothing is held and nothing has looks of its own, all that
-// words know of optics is the classes of codes; and of divided voxels how opaque these are, which
-// is left to the caller.
-// @param before  the same axis as other optics have it; null: none
+// Returns the words of other optics, or null, and numbers the classes alike. Unless something is
+// held or painted, words depend only on classes and, if divided, on opacities (checked elsewhere).
+// @param before  the same axis with other optics, or null
 std::shared_ptr<const PackedDeltas> sharedWords(const AxisPlan& plan,
                                                 const PreparedScene::Impl& scene,
                                                 const PreparedAxis* before, ClassTable& classes) {
@@ -95,19 +90,20 @@ std::shared_ptr<const PackedDeltas> sharedWords(const AxisPlan& plan,
     return takeNumbers(before->classes(), classes) ? before->words : nullptr;
 }
 
-// Returns the classes of levels for an axis' steps, or for straight ones where shorter ones
-// would hide some; `first` becomes the steps that they are for.
+// Returns the classes of levels for an axis' steps, or for straight steps if shorter ones would
+// hide some. `first` becomes the steps of the classes.
 ClassTable classesOf(const PreparedScene::Impl& scene, const AxisPlan& plan, const Volume& levels,
                      double& first) {
     const Volume& volume = *scene.scene.volume;
     const AxisKey& key = plan.key;
-    const double straight = planeDistance(volume.worldFromIndex, key.sliceAxis) / key.parts.slices;
+    const double straight =
+        planeDistance(volume.worldFromIndex(), key.sliceAxis) / key.parts.slices;
     const auto straightClasses = [&] {
         const ClassTable* const known =
             &levels == &volume ? scene.knownClasses(key.sliceAxis) : nullptr;
         return known ? *known : classify(levels, scene.optics, straight);
     };
-    // What is held does not depend on the camera: straight ways decide.
+    // Held voxels must not depend on the camera, so straight steps decide.
     first = scene.options.tolerance.isExact() ? plan.steps : 1;
     if (first == 1) return straightClasses();
     ClassTable classes = classify(levels, scene.optics, straight * first);
@@ -116,7 +112,7 @@ ClassTable classesOf(const PreparedScene::Impl& scene, const AxisPlan& plan, con
     return straightClasses();
 }
 
-// @param before  the same axis as other optics have it; null: none
+// @param before  the same axis with other optics, or null
 std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, const AxisPlan& plan,
                                             const PreparedAxis* before, const Listener& listener) {
     const Subdivision& parts = plan.key.parts;
@@ -130,7 +126,7 @@ std::shared_ptr<const PreparedAxis> prepare(const PreparedScene::Impl& scene, co
     double first = 1;
     ClassTable classes = classesOf(scene, plan, levels, first);
     listener.report(0.05);
-    // Small footprints of two digits are never stamped.
+    // Small footprints are never stamped with two digits.
     Encoding encoding = plan.key.encoding;
     if (encoding == Encoding::kFewerWordsOrStamps && !classes.oneDigit())
         encoding = Encoding::kFewerWords;
@@ -214,7 +210,7 @@ std::uint64_t PreparedAxis::stamps(Method method) const {
 
 std::shared_ptr<const PreparedAxis> PreparedAxis::withWords(const SlabRange& part) const {
     auto some = std::make_shared<const PackedDeltas>(packer->pack(part));
-    // What is painted is not packed in parts.
+    // Painted words are never packed in parts.
     StepColors ofSome(*some, classes(), nullptr);
     return std::make_shared<const PreparedAxis>(
         PreparedAxis{plan, std::move(some), std::move(ofSome)});
@@ -235,7 +231,7 @@ PreparedScene::Impl::Impl(Scene ofScene, SplatOptions withOptions, bool forOne, 
     far = FarGroups::find(*scene.volume, more);
 }
 
-// What is known of all is known of a group: its colours, and light that others leave of it.
+// The group shares the whole's facts: colours, and the light that other groups leave.
 PreparedScene::Impl::Impl(const Impl& whole, std::size_t group)
     : given(whole.given),
       scene{std::make_shared<const Volume>(whole.far->volume(group)), whole.scene.optics},
@@ -252,7 +248,7 @@ PreparedScene::Impl::Impl(const Impl& before, Optics others)
 }
 
 PreparedScene::Impl::Axes PreparedScene::Impl::axes() const {
-    // Of what is painted, words are not all that classes say, even where none are left.
+    // Words of painted voxels depend on more than classes.
     if (painter) return before_;
     Axes axes;
     const std::lock_guard lock(mutex_);
@@ -270,7 +266,7 @@ PreparedScene::Impl::Axes PreparedScene::Impl::axes() const {
 }
 
 std::shared_ptr<const PreparedAxis> PreparedScene::Impl::wholeAxis(Place& place) {
-    // Who is making it may be waiting for the other one.
+    // Waiting could deadlock, because its maker may wait for this axis.
     const std::unique_lock lock(place.mutex, std::try_to_lock);
     return lock && place.axis && place.axis->deltas().areWhole() ? place.axis : nullptr;
 }
@@ -299,7 +295,7 @@ void PreparedScene::Impl::forgetSlants(const AxisKey& key) const {
     std::uint64_t last = 0;
     for (const std::shared_ptr<Place>& place : places_)
         if (isOther(place)) last = std::max(last, place->lastUse);
-    // Who uses one holds it.
+    // Users of an axis hold it.
     std::erase_if(places_,
                   [&](const auto& place) { return isOther(place) && place->lastUse != last; });
 }
@@ -310,7 +306,7 @@ void PreparedScene::Impl::forgetOtherEyes(const glm::dvec3& eye) const {
 
 std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const AxisPlan& plan,
                                                               const Listener& listener) const {
-    // No other region sees the same.
+    // No other region needs the same axis.
     if (plan.seen && isForOne) return prepare(*this, plan, nullptr, listener);
     const AxisKey& key = plan.key;
     const bool isJoined = key.parts.joined > 1;
@@ -331,9 +327,9 @@ std::shared_ptr<const PreparedAxis> PreparedScene::Impl::axis(const AxisPlan& pl
         if (isJoined && key.slabLength == SlabLength::kByCounts) forgetSlants(key);
     }
     const std::lock_guard lock(place->mutex);
-    // Seen from elsewhere, it has other words.
+    // Words for another eye do not serve.
     if (place->axis && place->axis->plan.seen != plan.seen) place->axis = nullptr;
-    // Work of another picture, taken on while waiting here, might want the same axis.
+    // Isolated, because other tasks taken on while waiting here might want the same axis.
     std::shared_ptr<const PreparedAxis> other;
     if (!place->axis && otherWay) other = wholeAxis(*otherWay);
     if (other && !isJoined) place->axis = other;
@@ -352,12 +348,12 @@ bool PreparedScene::Impl::canJoinSlices() const {
 bool PreparedScene::Impl::canPairSlices() const {
     if (!canJoinSlices()) return false;
     if (hasOneColor()) return true;
-    const glm::dmat4& worldFromIndex = scene.volume->worldFromIndex;
+    const glm::dmat4& worldFromIndex = scene.volume->worldFromIndex();
     int farthest = 0;
     for (int axis = 1; axis < 3; ++axis)
         if (planeDistance(worldFromIndex, axis) > planeDistance(worldFromIndex, farthest))
             farthest = axis;
-    // In shorter steps there are no more classes.
+    // Shorter steps give no more classes.
     const ClassTable& classes = straightClasses(farthest);
     const std::lock_guard lock(factsMutex_);
     if (!canPairSlices_) canPairSlices_ = canBePaired(classes);
@@ -370,7 +366,7 @@ std::size_t PreparedScene::Impl::blocksSeen(int sliceAxis) const {
     std::optional<std::size_t>& blocks = blocksSeen_[std::size_t(sliceAxis)];
     if (!blocks) {
         isolated([&] {
-            blocks = listBlocks(*scene.volume->codes, sliceAxis, classes.classOfSlot()).size();
+            blocks = listBlocks(*scene.volume->codes(), sliceAxis, classes.classOfSlot()).size();
         });
     }
     return *blocks;
@@ -385,7 +381,7 @@ const ClassTable& PreparedScene::Impl::straightClasses(int sliceAxis) const {
     const std::lock_guard lock(factsMutex_);
     std::unique_ptr<const ClassTable>& classes = straightClasses_[std::size_t(sliceAxis)];
     if (!classes) {
-        const double straight = planeDistance(scene.volume->worldFromIndex, sliceAxis);
+        const double straight = planeDistance(scene.volume->worldFromIndex(), sliceAxis);
         isolated([&] {
             classes = std::make_unique<const ClassTable>(classify(*scene.volume, optics, straight));
         });

@@ -20,33 +20,30 @@ namespace deltasplat {
 
 namespace {
 
-/// Some of a picture's pixels, and what of the slabs shows in them, from the front on.
+/// Pixels of a picture, and the slabs that show in them, from front to back.
 struct PlanePart {
     PixelBox pixels;
     std::vector<SeenSlab> slabs;
-    PlaneBox whole;  ///< what all slabs reach of the plane, of which there is a part; else empty
+    PlaneBox whole;  ///< reach of all slabs, if this is a part; else empty
 };
 
-/// Cuts a picture into parts where most of its base plane would be empty, or out of the picture:
-/// base plane and sheets of a part have what voxels reach of it alone, so that a picture costs by
-/// the voxels that it shows, not by the box that they lie in. Bits are those of the whole.
-/// @param pixels  of the picture, that are wanted
-/// @return what shows anything; a single part, of all slabs as they are, where the plane is not
-///         that large or full enough
+/// Cuts a picture into parts if most of its base plane would be empty or outside the picture. A
+/// part's base plane and sheets cover only its own voxels, so the cost depends on the visible
+/// voxels, not on their box. Bits do not change.
+/// @param pixels  the wanted pixels
+/// @return the parts that show anything; or a single part with all slabs
 std::vector<PlanePart> planeParts(const SlabInput& input, const PlaneView& plane,
                                   const PixelBox& pixels);
 
-/// Calls `show` for each part with where it is written; what no part shows is clear.
-/// @param all         what is wanted of the picture
-/// @param writesAll   whether who shows writes all pixels of a part; else some, into those that
-///                    there are
+/// Calls `show` for each part and its place; other pixels become clear.
+/// @param all         the wanted part of the picture
+/// @param writesAll   whether `show` writes all pixels of a part; else it adds to those there
 void showParts(std::vector<PlanePart>& parts, const PicturePart& all, bool writesAll,
                const std::function<void(PlanePart& part, const PicturePart& to)>& show);
 
-// What a part's planes and sheets are to take at most.
+// Limit for the planes and sheets of a part.
 constexpr double kMostBytes = 1 << 27;
-// Smaller parts of the picture would read little less: what is shown is filtered over half as many
-// pixels from an eye, and over as many of parallel lines, to either side.
+// Smaller parts read little less: filters reach half as far from an eye, as far for parallel lines.
 constexpr int kLeastPixels = 4;
 constexpr int kLeastPixelsParallel = 8;
 // Slices that share a part of a sheet.
@@ -87,7 +84,7 @@ class PartFinder {
 
     std::vector<PlanePart> find(const PixelBox& pixels) {
         if (!isSparse(pixels)) return {{pixels, seen_, {}}};
-        // Of these, each half of a picture keeps its own.
+        // Each half of a picture keeps its own list.
         requireMemory("parts of the picture",
                       2.0 * sizeof(std::uint32_t) * double(deltas_.words.size()));
         std::vector<std::uint32_t> words(deltas_.words.size());
@@ -97,10 +94,10 @@ class PartFinder {
     }
 
   private:
-    // Words of a slab, from the first slice on, that reach a part of the plane.
+    // Words of a slab that reach a part of the plane, from the first slice on.
     struct SlabWords {
         const SeenSlab* seen;
-        std::vector<std::pair<int, std::uint32_t>> words;  // and the slice of each
+        std::vector<std::pair<int, std::uint32_t>> words;  // with their slices
     };
 
     void divide(const PixelBox& pixels, const std::vector<std::uint32_t>& words) {
@@ -109,7 +106,7 @@ class PartFinder {
         PlanePart part = partOf(pixels, box, words, reaching);
         if (part.slabs.empty()) return;
         const glm::ivec2 size = pixels.size();
-        // Where the plane is small, it is not the part of the picture that makes sheets large.
+        // With a small plane, the sheets are not large because of the part.
         const int least = input_.plane.isParallel() ? kLeastPixelsParallel : kLeastPixels;
         const bool isSmall = layerBytes(box, input_.layout.channels) < kMostBytes / 64;
         if (isSmall || std::max(size.x, size.y) <= least || bytesOf(part) <= kMostBytes) {
@@ -125,7 +122,7 @@ class PartFinder {
         divide(second, reaching);
     }
 
-    // @param reaching  those of the words that reach the box, are put there
+    // @param reaching  receives the words that reach the box
     PlanePart partOf(const PixelBox& pixels, const PlaneBox& box,
                      const std::vector<std::uint32_t>& words,
                      std::vector<std::uint32_t>& reaching) const {
@@ -143,7 +140,7 @@ class PartFinder {
                     slice = sliceOf(*word, slice) - 1;
                     continue;
                 }
-                // Changes are there from their slice on; what is whole is in its slice alone.
+                // Changes last from their slice on; whole words belong to their slice only.
                 const bool isSeen = slice >= seen.firstSlice && slice <= seen.lastSlice;
                 const bool isUsed = isSeen || !seen.slab->whole;
                 const int lastWalked =
@@ -165,7 +162,7 @@ class PartFinder {
             part.slabs.push_back(std::move(cut));
         }
         std::sort(reaching.begin(), reaching.end());
-        // What is shown is read of all of the box.
+        // Showing reads the whole box.
         if (!part.slabs.empty()) part.slabs.front().box = aroundBoth(part.slabs.front().box, box);
         return part;
     }
@@ -173,7 +170,7 @@ class PartFinder {
     std::size_t firstWordOf(int slice) const {
         return deltas_.begins[std::size_t(slice - deltas_.box.min.x)];
     }
-    // The slice of a word, which is one of those from `first` on.
+    // The slice of a word, at or after `first`.
     int sliceOf(std::size_t word, int first) const {
         const auto from = deltas_.begins.begin() + (first - deltas_.box.min.x);
         const auto behind = std::upper_bound(from, deltas_.begins.end(), word);
@@ -214,7 +211,7 @@ class PartFinder {
         run.blocks = {glm::min(run.blocks.first, block), glm::max(run.blocks.last, block)};
     }
 
-    // Of parallel lines of sight, what a run's part of a sheet has is drawn as wide as it is.
+    // With parallel lines, each run's part of a sheet is drawn at its full width.
     void placeCut(SeenSlab& cut, const SeenSlab& seen, const PlaneBox& box) const {
         if (!input_.plane.isParallel()) {
             cut.box = bothOf(reachOfSeen(input_, seen), box);
@@ -281,7 +278,7 @@ void showParts(std::vector<PlanePart>& parts, const PicturePart& all, bool write
     }
 }
 
-// Puts slabs together and shows them, view by view.
+// Merges slabs and shows them, view by view.
 class ImageSink : public ViewSink {
   public:
     ImageSink(Image& image, KeptMemory& memory)
@@ -305,7 +302,6 @@ class ImageSink : public ViewSink {
     }
 
   private:
-    // What of the picture is written.
     PicturePart part() {
         return group_ ? PicturePart(*group_, first_, size_) : PicturePart(whole_);
     }
@@ -317,7 +313,7 @@ class ImageSink : public ViewSink {
         std::vector<PlanePart> parts = planeParts(slabs, view->plane(), {all.first, all.last()});
         double gain = 0;
         showParts(parts, all, slabs.plane.isParallel(), [&](PlanePart& one, const PicturePart& to) {
-            // Parts are of many sizes: memory that few can use would add up.
+            // Parts differ in size: memory that few can reuse would pile up.
             if (parts.size() > 1) memory_.endPicture();
             const double share = 0.7 * double(&one - parts.data()) / double(parts.size());
             Layer merged =
@@ -330,8 +326,7 @@ class ImageSink : public ViewSink {
         addBound(view->errorBound(), gain, stats);
     }
 
-    // Makes words of a few slabs at a time, from the front on, and puts what they show behind what
-    // is there.
+    // Makes words of a few slabs at a time, and puts each result behind the layer so far.
     void showInParts(const PlannedView& planned, RenderStats& stats, const Listener& listener) {
         std::vector<SlabRange> parts = planned.axis->packer->parts();
         if (!planned.plan.view.frontToBack) std::reverse(parts.begin(), parts.end());
@@ -341,7 +336,7 @@ class ImageSink : public ViewSink {
             const auto share = [&](double part) {
                 return 0.2 + 0.7 * (double(i) + part) / double(parts.size());
             };
-            // Words of one part go before those of the next come.
+            // Free the words of one part before making the next.
             view = nullptr;
             const Clock::time_point start = Clock::now();
             std::shared_ptr<const PreparedAxis> axis = planned.axis->withWords(parts[i]);
@@ -377,8 +372,8 @@ class ImageSink : public ViewSink {
     Image& whole_;
     glm::ivec2 size_;
     KeptMemory& memory_;
-    std::optional<Image> group_;  // of the group in hand
-    glm::ivec2 first_{0};         // pixel of the picture that it begins with
+    std::optional<Image> group_;  // of the current group
+    glm::ivec2 first_{0};         // of the group in the picture
 };
 
 }  // namespace

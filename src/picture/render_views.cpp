@@ -26,7 +26,7 @@ namespace deltasplat {
 
 namespace {
 
-// Opacity and light that nobody sees: an opacity of 8 bits would be 0.
+// Opacity and light that nobody sees: 0 when rounded to 8 bits.
 constexpr float kHardlySeen = 0.5f / 255;
 
 class ViewsRender {
@@ -76,7 +76,7 @@ class ViewsRender {
         stats_.renderSeconds += secondsSince(renderStart) - (stats_.prepareSeconds - prepared);
     }
 
-    // Groups of voxels that lie far apart, those in front first.
+    // Renders far groups from front to back.
     void runGroups(const Listener& listener) {
         const FarGroups& far = *scene_.far;
         const std::vector<std::size_t> order = far.frontToBack(camera_);
@@ -86,7 +86,7 @@ class ViewsRender {
             showsAllGroups_ = showsAllGroups_ && !seen.isNothing();
             if (seen.isNothing()) continue;
             const auto group = std::make_shared<const PreparedScene::Impl>(scene_, order[i]);
-            // Counts are those of all groups.
+            // The stats count all groups.
             const RenderStats before = stats_;
             stats_.visible = stats_.deltas = stats_.voxels = 0;
             stats_.slices = 0;
@@ -106,7 +106,7 @@ class ViewsRender {
         stats_.parts = axis.parts().voxels();
         stats_.joined = axis.parts().joined;
         stats_.stamps += axis.stamps(scene_.options.method);
-        // Of regions, that which sees most stands for all.
+        // The region with most visible voxels stands for all.
         if (stats_.slices > 0 && axis.deltas().visible() <= stats_.visible) return;
         stats_.sliceAxis = axis.sliceAxis();
         const IndexBox& box = axis.deltas().box;
@@ -117,7 +117,7 @@ class ViewsRender {
         stats_.slabs = int(axis.deltas().slabs.size());
     }
 
-    // Who reads an empty volume has been told so.
+    // Readers have already warned of an empty volume.
     void warnOfEmptyPicture(const Listener& listener) const {
         const Volume& volume = *scene_.scene.volume;
         if (volume.empty() || sink_.isAnyBeyond(kHardlySeen)) return;
@@ -128,16 +128,16 @@ class ViewsRender {
             listener.warn(
                 std::string("picture: empty, for ") +
                 (isSurface ? "the surface encloses" : "transfer function and extinction show") +
-                " none of the values " + numberText(volume.valueMin) + " to " +
-                numberText(volume.valueMax));
+                " none of the values " + numberText(volume.valueMin()) + " to " +
+                numberText(volume.valueMax()));
         } else if (!saysDots_) {
             listener.warn(emptyPictureText(volume, "is far smaller than a pixel"));
         }
     }
 
-    // Whether any voxel can be seen from elsewhere, of a picture whose regions see none.
+    // Whether any voxel is visible from elsewhere, if the picture's regions show none.
     bool isAnythingVisible(const Listener& listener) const {
-        // Groups that are not seen have not been asked.
+        // Invisible groups were not examined.
         if (scene_.far) return !showsAllGroups_;
         AxisPlan all = plan_.views.front().axis;
         all.seen.reset();
@@ -152,7 +152,7 @@ class ViewsRender {
     RenderStats stats_;
     DrawPlan plan_;
     bool showsAllGroups_ = true;
-    bool saysDots_ = false;  // whether it has been said that the picture shows no more than dots
+    bool saysDots_ = false;  // whether warnOfDots() has warned
 };
 
 }  // namespace
@@ -190,7 +190,7 @@ bool isAnyBeyond(std::span<const float> values, float least) {
 
 namespace {
 
-// The picture itself, and what encoding it takes besides (measured: 41 bytes for a float .exr).
+// The picture and its encoding (measured: 41 bytes for a float .exr).
 constexpr double kBytesPerPixel = 48;
 
 void requireImageMemory(glm::ivec2 size) {
@@ -220,11 +220,11 @@ RenderResult render(const Volume& volume, const RenderOptions& options, const Li
         result.image = clearImage(result.camera.sizePixels);
     };
     RenderStats& stats = result.stats;
-    stats.voxels = voxelsOf(volume.box);
+    stats.voxels = voxelsOf(volume.box());
     stats.mode = options.mode;
     stats.method = options.splat.method;
     if (options.mode == Mode::kComposite) {
-        // A camera that cannot be is refused before there is work.
+        // Refuse bad cameras before there is work.
         if (options.optics.parts.empty()) makePicture(volume);
         // The volume outlives the scene.
         const std::shared_ptr<const Volume> borrowed(std::shared_ptr<const Volume>(), &volume);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading blocks of codes as values, compiled once for each SIMD level.
+// Reads blocks of codes as values, compiled once per SIMD level.
 #include "rays/block_kernels.h"
 
 #include "base/simd_targets.h"
@@ -17,13 +17,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 using EightTag = hn::CappedTag<float, 8>;
 using CodeTag = hn::FixedTag<Code, 8>;
 
-// Mirrors 8x8 codes at their diagonal; rows of `in` and `out` lie this far apart.
+// Transposes 8x8 codes; steps are between rows.
 HWY_INLINE void transposeCodes(const Code* in, std::size_t inStep, Code* out, std::size_t outStep) {
     const CodeTag tag;
     const hn::RepartitionToWide<CodeTag> pairs;
     const hn::RepartitionToWide<decltype(pairs)> fours;
     const auto load = [&](int row) { return hn::LoadU(tag, in + row * inStep); };
-    // After each step, runs of twice as many codes of one column are together.
+    // Each step doubles the runs of codes of one column.
     const auto four = [&](int row, auto& low, auto& high) {
         const auto a = load(row), b = load(row + 1), c = load(row + 2), d = load(row + 3);
         const auto abLow = hn::BitCast(pairs, hn::InterleaveLower(tag, a, b));
@@ -50,7 +50,6 @@ HWY_INLINE void transposeCodes(const Code* in, std::size_t inStep, Code* out, st
     }
 }
 
-// Puts the codes of a leaf into (slice, u, v) order.
 HWY_INLINE const Code* inSliceOrder(const Code* codes, int sliceAxis, Code* ordered) {
     if (sliceAxis == 0) return codes;
     for (std::size_t i = 0; i < 8; ++i) {

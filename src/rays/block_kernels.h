@@ -11,15 +11,15 @@ namespace deltasplat {
 struct CodeValues {
     const float* table = nullptr;  ///< [kCodeCount]
     float offset = 0;              ///< value = code + offset, if `direct`
-    bool direct = false;           ///< exact, and faster than the table
+    bool direct = false;           ///< if exact, and faster than the table
 };
 
-/// Where the values of an 8x8x8 block go: [slice][u][v], eight values along v side by side.
+/// Destination of an 8x8x8 block's values: [slice][u][v], eight values along v side by side.
 struct ValuePlace {
     float* first;
     std::size_t sliceStep;
     std::size_t rowStep;
-    int firstSlice = 0;  ///< of those that are wanted; others are left out
+    int firstSlice = 0;  ///< first wanted slice
     int lastSlice = 7;
 };
 

@@ -9,10 +9,10 @@
 namespace deltasplat {
 namespace {
 
-// Vectors of four are read from any place on.
+// Vectors of four are read from any value on.
 constexpr std::size_t kSpare = 4;
 
-// Positions [first, last] of a box along one axis that voxels [8 * block, 8 * block + 7] have.
+// Positions [first, last] of a box along one axis in voxels [8 * block, 8 * block + 7].
 struct Overlap {
     int first;
     int last;
@@ -26,7 +26,7 @@ struct Overlap {
     }
 };
 
-// What a block and a box have in common.
+// Intersection of a block and a box.
 struct Shared {
     Overlap s, u, v;
 
@@ -37,7 +37,7 @@ struct Shared {
     std::size_t voxels() const { return s.count() * u.count() * v.count(); }
 };
 
-// Copies values forwards or backwards: mostly eight, in vectors.
+// Copies values forwards or backwards, mostly eight.
 void copyRow(const float* from, std::ptrdiff_t count, bool isForward, float* to) {
     if (count == 8 && isForward) {
         std::copy_n(from, 8, to);
@@ -67,7 +67,7 @@ bool PatchReader::find(const RayAxes& axes, const PatchBox& box) {
     }
     found_.clear();
     const std::vector<CodeBlock>& blocks = volume_.blocks;
-    // Of few blocks each is looked at, however large the part.
+    // Few blocks are all tested, however large the part.
     if (double(high.y - low.y + 1) * (high.z - low.z + 1) > double(blocks.size())) {
         for (const CodeBlock& block : blocks) {
             if (glm::all(glm::greaterThanEqual(block.position, low)) &&
@@ -116,7 +116,7 @@ const RayPatch& PatchReader::read(const RayAxes& axes, const PatchBox& box) {
     return patch_;
 }
 
-// The largest of each 6x6 values (what may be read from any of 4x4 on), then of two slices.
+// Maximum of each 6x6 values, which any of 4x4 lines may read, then of two slices.
 void PatchReader::findTops(const PatchBox& box) {
     constexpr int kRead = kTopCell + 2;
     patch_.topsU = (box.size.y + kTopCell - 1) / kTopCell;
@@ -134,7 +134,7 @@ void PatchReader::findTops(const PatchBox& box) {
                     (std::size_t(slice) * std::size_t(box.size.y) + std::size_t(row)) *
                     std::size_t(box.size.z);
                 for (std::size_t v = 0; v < rowTops_.size(); ++v) {
-                    // Where nothing else counts, values that are not there are 0.
+                    // Without other active values, inactive ones are 0.
                     const float value = leavesOut && active_[first + v] == 0
                                             ? -std::numeric_limits<float>::infinity()
                                             : values_[first + v];

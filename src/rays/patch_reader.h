@@ -16,15 +16,14 @@ struct PatchBox {
     glm::ivec3 size{0};
 };
 
-/// Reads parts of a volume, in the order and the directions of lines of sight. Made once, to be
-/// used for one patch after the other; not thread-safe.
+/// Reads parts of a volume, in the order and directions of lines. Not thread-safe.
 class PatchReader {
   public:
     PatchReader(const RayVolume& volume, RayRule rule) : volume_(volume), rule_(rule) {}
 
-    /// Whether there is any block in a part.
+    /// Whether a part has any block; finds its blocks.
     bool find(const RayAxes& axes, const PatchBox& box);
-    /// Reads the part that was looked for, of which what lies outside of the volume is not active.
+    /// Reads the part of find(); voxels outside the volume are not active.
     const RayPatch& read(const RayAxes& axes, const PatchBox& box);
     const RayPatch& patch() const { return patch_; }
 

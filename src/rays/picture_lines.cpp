@@ -17,7 +17,7 @@ namespace deltasplat {
 
 namespace {
 
-// What values between voxels reach.
+// Reach of values between voxels.
 constexpr double kReach = 1;
 
 Camera refined(Camera camera, int perSide) {
@@ -25,18 +25,19 @@ Camera refined(Camera camera, int perSide) {
     return camera;
 }
 
-// How wide a voxel is seen in the middle of the volume, over how long: 1 of a cube.
+// Width over length of a voxel as seen in the middle of the volume: 1 for a cube.
 double narrowness(const Volume& volume, const Camera& camera) {
-    const glm::dmat3 edges(volume.worldFromIndex);
+    const glm::dmat3 edges(volume.worldFromIndex());
     glm::dvec3 sight = camera.direction;
     if (camera.projection != Projection::kOrtho) {
-        const glm::dvec3 middle = 0.5 * (glm::dvec3(volume.box.min) + glm::dvec3(volume.box.max));
+        const glm::dvec3 middle =
+            0.5 * (glm::dvec3(volume.box().min) + glm::dvec3(volume.box().max));
         const glm::dvec3 away =
-            glm::dvec3(volume.worldFromIndex * glm::dvec4(middle, 1)) - camera.eyeWorld();
+            glm::dvec3(volume.worldFromIndex() * glm::dvec4(middle, 1)) - camera.eyeWorld();
         if (glm::length(away) > 0) sight = glm::normalize(away);
     }
     const glm::dmat3 across = edges - glm::outerProduct(sight, sight * edges);
-    // The squares of how long and how wide, from their sum and that of their squares.
+    // Squared length and width, from their sum and the sum of their squares.
     const glm::dmat3 squares = across * glm::transpose(across);
     const double sum = squares[0][0] + squares[1][1] + squares[2][2];
     double ofSquares = 0;
@@ -48,8 +49,8 @@ double narrowness(const Volume& volume, const Camera& camera) {
 
 double pixelsPerVoxel(const Volume& volume, const Camera& camera) {
     return camera.projection == Projection::kOrtho
-               ? factorize(camera, volume.worldFromIndex, 1).pixelsPerVoxel
-               : factorizeRegions(camera, volume.box, volume.worldFromIndex, 1)
+               ? factorize(camera, volume.worldFromIndex(), 1).pixelsPerVoxel
+               : factorizeRegions(camera, volume.box(), volume.worldFromIndex(), 1)
                      .front()
                      .pixelsPerVoxel;
 }
@@ -59,13 +60,12 @@ double pixelsPerVoxel(const Volume& volume, const Camera& camera) {
 LineCount countLines(const Volume& volume, const Camera& camera) {
     const double pixels = pixelsPerVoxel(volume, camera);
     const glm::dvec2 size(camera.sizePixels);
-    // From an eye each row and column is held.
+    // From an eye, every row and column is kept in memory.
     const double mostAcross = camera.projection == Projection::kOrtho ? 0x1p30 : 0x1p18;
     const double most =
         std::max(std::floor(mostAcross / std::max(size.x, size.y)), double(kLeastPerSide));
     const double narrow = pixels * narrowness(volume, camera);
-    // Less than a tenth of a voxel too few does not matter, nor a pixel half as large again as a
-    // voxel is narrow.
+    // Neither a tenth of a voxel too few matters, nor pixels half as large again as voxels.
     constexpr double kHardlyNarrow = 1.5;
     const auto linesOf = [most](double side) {
         return side > 0 ? std::max(std::ceil(1 / side - 0.1), 1.0) : most;
@@ -73,7 +73,7 @@ LineCount countLines(const Volume& volume, const Camera& camera) {
     const double all = narrow * kHardlyNarrow >= 1 ? linesOf(pixels) : linesOf(narrow);
     const double wanted = std::min(all, most);
     if (wanted <= kLeastPerSide) return {int(wanted), all / wanted};
-    const SeenBox seen = seenBox(volume.box, volume.worldFromIndex, camera, kReach);
+    const SeenBox seen = seenBox(volume.box(), volume.worldFromIndex(), camera, kReach);
     const double shown = std::min(seen.size.x, size.x) * std::min(seen.size.y, size.y);
     const double affordable = std::sqrt(kMostLines / std::max(shown, 0x1p-60));
     const double count = std::min(wanted, std::max(std::floor(affordable), double(kLeastPerSide)));
@@ -84,12 +84,12 @@ PictureLines::PictureLines(const Volume& volume, const Camera& camera, int perSi
     : camera_(camera),
       perSide_(perSide),
       fine_(refined(camera, perSide)),
-      world_(volume.worldFromIndex),
-      box_(volume.box),
-      seen_(seenOf(volume.box)),
-      linear_(volume.worldFromIndex) {
+      world_(volume.worldFromIndex()),
+      box_(volume.box()),
+      seen_(seenOf(volume.box())),
+      linear_(volume.worldFromIndex()) {
     const glm::dmat3 fromWorld = glm::inverse(linear_);
-    const glm::dvec3 first(volume.worldFromIndex * glm::dvec4(volume.box.min, 1));
+    const glm::dvec3 first(volume.worldFromIndex() * glm::dvec4(volume.box().min, 1));
     if (camera.projection != Projection::kOrtho) {
         rays_.emplace(fine_, fromWorld);
         origin_ = fromWorld * (camera.eyeWorld() - first);
@@ -127,8 +127,7 @@ PictureLine PictureLines::lineOf(const glm::dvec3& through, const glm::dvec3& di
 
 namespace {
 
-// What is within this of a tie, or of straight, is so: rounding neither chooses an axis nor tilts a
-// straight view.
+// Limit for ties and straight views, so that rounding neither chooses an axis nor tilts a view.
 constexpr double kRounding = 1e-9;
 
 int mostParallelAxis(const glm::dvec3& ray) {
@@ -175,7 +174,7 @@ void SightRay::beginAt(double slicesFromPoint) {
     clip();
 }
 
-// A voxel is read up to one beside it.
+// A voxel is read from up to one voxel away.
 void SightRay::clip() {
     slices = {std::max(nearest, -1.0), axes.count[0]};
     for (int i = 0; i < 2; ++i) {
@@ -203,15 +202,14 @@ void LineGroup::addLine(const glm::dvec2& start, const glm::dvec2& slope) {
     add(last_, slices_.y + 1);
 }
 
-// The smallest of linear functions lies above the straight line between its ends, the largest
-// below.
+// The minimum of linear functions lies above the straight line between its ends, the maximum below.
 LineGroup::Range LineGroup::rangeAt(double slice) const {
     const double way = std::clamp((slice - slices_.x + 1) / (slices_.y - slices_.x + 2), 0.0, 1.0);
     return {glm::mix(first_.low, last_.low, way), glm::mix(first_.high, last_.high, way)};
 }
 
 float LineGroup::topOf(const TopGrid& tops, const RayAxes& axes, const BlockLayer& layer) const {
-    // Rounding puts no line into a voxel that is not looked at.
+    // Rounding puts no line into an unseen voxel.
     constexpr double kRounding = 1e-6;
     const glm::dvec2 from = rangeAt(layer.slices.x - 1).low - kRounding;
     const glm::dvec2 to = rangeAt(layer.slices.y + 1).high + kRounding + 1.0;
@@ -230,9 +228,9 @@ float LineGroup::topOf(const TopGrid& tops, const RayAxes& axes, const BlockLaye
 
 namespace {
 
-// To follow a square takes longer than to place so many blocks in a picture.
+// Following a square takes longer than placing this many blocks in a picture.
 constexpr double kBlocksOfCell = 16;
-// Near an eye a block may be seen in all of them.
+// Near an eye, one block may be in all squares.
 constexpr double kPlacesOfBlock = 64;
 
 PixelBox bothOf(const PixelBox& a, const PixelBox& b) {
@@ -266,7 +264,7 @@ LineCells::LineCells(const PictureLines& lines, const RayVolume& volume, int sid
     forPlaces([&](std::size_t cell, std::uint32_t) { ++ends_[cell + 1]; });
     std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
     blocks_.resize(ends_.back());
-    // Each end is its cell's begin until all of the cell's blocks are there.
+    // An end starts as its cell's begin, and grows with the cell's blocks.
     forPlaces([&](std::size_t cell, std::uint32_t block) { blocks_[ends_[cell]++] = block; });
 }
 

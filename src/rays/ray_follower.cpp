@@ -8,19 +8,19 @@
 namespace deltasplat {
 namespace {
 
-// Voxels of a slice that are read at a time, at most.
+// Most voxels of a slice read at a time.
 constexpr double kMostVoxels = 128 * 128;
 
-// Of a voxel: means of less are made of rounding.
+// In voxels: means over less are rounding noise.
 constexpr double kLeastShare = 0x1p-10;
 
-// Bundles that are followed through the same layers: 8x8 lines.
+// Bundles followed through the same layers: 8x8 lines.
 constexpr std::size_t kGroupBundles = 8;
 constexpr std::size_t kGroupLines = kGroupBundles * kRayBundle;
 
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
-// A slice of a patch where a ray of which only a part is seen meets it.
+// A slice of a patch that a ray meets, but sees only partly.
 struct CutSlice {
     const RayPatch& patch;
     const float* values;  // of the slice; null: 1
@@ -34,7 +34,7 @@ struct CutSlice {
         return double(values[std::ptrdiff_t{u} * patch.sizeV + v]);
     }
 
-    // What is read `way` behind the place where the slice's neighbour before it is met.
+    // Reads the slice at a place along the ray.
     double read(double place) const {
         const glm::dvec2 p = ray.start + place * ray.slope;
         const glm::dvec2 whole(std::floor(p.x), std::floor(p.y));
@@ -46,8 +46,8 @@ struct CutSlice {
         return here + part.x * (next - here);
     }
 
-    // The integral of the slice's share from a place on: between the planes of voxels it is a
-    // polynomial of the third degree, which two readings of Gauss's rule give exactly.
+    // Integral of the slice's share from a place on: a cubic polynomial between planes of voxels,
+    // which Gauss's rule integrates exactly with two readings.
     double from(int slice, double place) const {
         std::vector<double> ends;
         const double last = slice + 1;
@@ -76,7 +76,7 @@ struct CutSlice {
     }
 };
 
-// Returns how far a position lies behind a whole voxel, which is counted from `first`.
+// Returns the distance of a position behind a whole voxel, counted from `first`.
 float behindWhole(double position, int first, std::int32_t& whole) {
     position = std::clamp(position, -1e9, 1e9);
     auto below = std::int32_t(position);
@@ -85,7 +85,7 @@ float behindWhole(double position, int first, std::int32_t& whole) {
     return float(position - below);
 }
 
-// The first slice that a ray sees all of, of those that it adds up.
+// The first slice that a ray sees and sums up whole.
 double firstWhole(const SightRay& ray) {
     return std::ceil(ray.nearest) + 1;
 }
@@ -126,7 +126,6 @@ void RayFollower::follow(std::span<const SightRay> rays, std::span<RayFound> fou
     }
 }
 
-// Fills in bundles.
 void RayFollower::gather(std::span<const SightRay> rays) {
     const std::size_t bundles = (alike_.rays.size() + kRayBundle - 1) / kRayBundle;
     alike_.rays.resize(bundles * kRayBundle, alike_.rays.back());
@@ -160,7 +159,7 @@ void RayFollower::gather(std::span<const SightRay> rays) {
     }
 }
 
-// Lists the layers of blocks that lines meet, and what groups may find in each.
+// Lists the layers of blocks that lines meet, and groups' largest values there.
 void RayFollower::listLayers() {
     double from = axes_.count.x;
     double to = -1;
@@ -192,8 +191,8 @@ void RayFollower::listLayers() {
     }
 }
 
-// Whether a bundle may find something in a layer whose blocks hold no more than `top`: of largest
-// values more than before, or as much at a nearer place.
+// Whether a bundle may find something in a layer of blocks up to `top`: for largest values, a
+// larger one, or an equal one at a nearer place.
 bool RayFollower::mayFind(std::size_t bundle, float top, const BlockLayer& layer) const {
     const Best& best = bests_[bundle];
     return !best.areMet || top > best.least ||
@@ -203,7 +202,7 @@ bool RayFollower::mayFind(std::size_t bundle, float top, const BlockLayer& layer
 void RayFollower::followAlike(std::span<const SightRay> rays, std::span<RayFound> found) {
     gather(rays);
     listLayers();
-    // What is found where the largest values are spares most of the others.
+    // Layers with the largest values first spare most others.
     if (isExtreme(rule_))
         for (std::size_t layer = 0; layer < layers_.size(); ++layer) addLayer(rays, layer, true);
     for (std::size_t layer = 0; layer < layers_.size(); ++layer) addLayer(rays, layer, false);
@@ -211,7 +210,7 @@ void RayFollower::followAlike(std::span<const SightRay> rays, std::span<RayFound
 }
 
 // Follows bundles through a layer.
-// @param isFirst  of largest values: those of groups that may find most there, or what is left
+// @param isFirst  largest values: groups with their largest top here, else the remaining ones
 void RayFollower::addLayer(std::span<const SightRay> rays, std::size_t number, bool isFirst) {
     const BlockLayer& layer = layers_[number];
     chosen_.clear();
@@ -225,7 +224,7 @@ void RayFollower::addLayer(std::span<const SightRay> rays, std::size_t number, b
             if (!isExtreme(rule_) || mayFind(bundle, top, layer)) chosen_.push_back(bundle);
     }
     if (chosen_.empty()) return;
-    // Largest values are looked for between slices, too, also before and behind what is there.
+    // Largest values are read between slices too, also before and behind the layer.
     const int around = isExtreme(rule_) ? 1 : 0;
     addSlices(rays, chosen_, layer.slices + glm::ivec2(-around, around));
     if (!isExtreme(rule_)) return;
@@ -263,7 +262,7 @@ void RayFollower::addSlices(std::span<const SightRay> rays, Bundles bundles,
     addSlices(rays, bundles.subspan(half), slices);
 }
 
-// Follows a bundle of lines that lie far apart: each as a bundle of its own.
+// Follows a bundle of lines that lie far apart, each as its own bundle.
 void RayFollower::addOneByOne(std::span<const SightRay> rays, std::size_t bundle,
                               const glm::ivec2& slices) {
     const Alike whole = alike_;
@@ -294,8 +293,8 @@ void RayFollower::addOneByOne(std::span<const SightRay> rays, std::size_t bundle
     shares_ = newShares;
 }
 
-// What lines read of some slices, first and last, and between these and those beside them. Where
-// they leave the volume they read what lies beside it.
+// Box of voxels that lines read for some slices, first and last, and between them and their
+// neighbours. Lines that leave the volume read beside it.
 PatchBox RayFollower::boxOf(Bundles bundles, const glm::ivec2& slices) const {
     PatchBox box;
     box.first.x = slices.x;
@@ -315,7 +314,7 @@ PatchBox RayFollower::boxOf(Bundles bundles, const glm::ivec2& slices) const {
         }
         const double beyond = axes_.count[axis + 1];
         const int first = int(std::floor(std::clamp(low, -4.0, beyond)));
-        // Four voxels from there on, and one for what is behind the last by less than a voxel.
+        // Four voxels from there on; the last one, for remainders of less than a voxel.
         const int last = int(std::floor(std::clamp(high, -4.0, beyond))) + 4;
         box.first[axis + 1] = first;
         box.size[axis + 1] = last - first + 1;
@@ -357,7 +356,7 @@ void RayFollower::addPatch(std::span<const SightRay> rays, Bundles bundles, cons
     isExtreme(rule_) ? maxSlices(patch, lines) : sumSlices(patch, lines);
 }
 
-// Adds what lines have of slices of which they see a part.
+// Adds slices that lines see only partly.
 void RayFollower::addCuts(std::span<const SightRay> rays, Bundles bundles, const PatchBox& box) {
     const double last = box.first.x + box.size.x - 1;
     for (const std::size_t bundle : bundles) {

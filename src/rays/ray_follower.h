@@ -11,50 +11,50 @@
 
 namespace deltasplat {
 
-/// What a line of sight finds.
+/// Result of a line of sight.
 struct RayFound {
-    double value = 0;    ///< the sum, times slices; or a value
-    double slice = 0;    ///< where a largest value is, in positions of the ray
-    bool isMet = false;  ///< of values: whether there is any
-    double weight = 1;   ///< of means: how much of active voxels is met, in slices
+    double value = 0;    ///< the sum, times slices, or a value
+    double slice = 0;    ///< place of a largest value, in positions of the ray
+    bool isMet = false;  ///< for values: whether there is any
+    double weight = 1;   ///< for means: active voxels met, in slices
 };
 
-/// Follows lines of sight through a volume, many at a time, eight slices at a time. What each finds
-/// depends on the volume and on itself alone, but for rounding. Holds what that takes, to be used
-/// for one picture's tiles after the other; not thread-safe.
+/// Follows many lines of sight at a time through a volume, eight slices at a time, tile after tile.
+/// Results depend only on the volume and the line, but for rounding. Not thread-safe.
 class RayFollower {
   public:
     /// @param volume  made for this rule
     RayFollower(const RayVolume& volume, RayRule rule)
         : volume_(volume), rule_(rule), reader_(volume, rule) {}
 
-    /// Says which blocks the lines may meet that are followed next; without that, it is any.
+    /// Limits the next lines to some blocks that they may meet; the default is all.
     /// @param blocks  numbers of the volume's
     void lookAt(std::span<const std::uint32_t> blocks);
 
-    /// Follows lines of sight, best of places beside each other.
-    /// @param found  as many
+    /// Follows lines of sight, best of neighbouring places.
+    /// @param found  one per ray
     void follow(std::span<const SightRay> rays, std::span<RayFound> found);
 
   private:
-    /// What lines have found so far.
+    /// Intermediate results.
     struct Sums {
         std::vector<float> found, rest, met;
         void reset(std::size_t count, float value);
         void set(std::size_t i, const Sums& other, std::size_t k);
     };
-    /// Lines of the same axes, in whole bundles: the last is there several times.
+    /// Lines of the same axes, in whole bundles padded with the last line.
     struct Alike {
-        std::vector<std::size_t> rays;  // which these are
+        std::vector<std::size_t> rays;  // their numbers
         std::vector<double> startU, startV, slopeU, slopeV;
-        std::vector<double> begins;  // the first slice that is seen as a whole, or where they begin
+        std::vector<double>
+            begins;  // first slice that is seen as a whole, or where the line begins
         std::vector<float> slopesU, slopesV;
     };
-    /// Bundles beside each other.
+    /// Neighbouring bundles.
     struct Group : LineGroup {
-        std::size_t best = 0;  ///< the layer that holds the largest values, where there is any
+        std::size_t best = 0;  ///< layer with the largest values, if there is any
     };
-    /// Of largest values: the least that a line of a bundle has found, the farthest place.
+    /// Largest values of a bundle: least result of its lines, farthest place.
     struct Best {
         float least = 0;
         float farthest = 0;
@@ -82,11 +82,11 @@ class RayFollower {
     RayAxes axes_;
     Alike alike_;
     std::vector<Group> groups_;
-    std::vector<BlockLayer> layers_;   // in the order in which lines meet them
-    std::vector<float> tops_;          // of each group of each layer
+    std::vector<BlockLayer> layers_;   // in the order that lines meet them
+    std::vector<float> tops_;          // of each group in each layer
     std::vector<Best> bests_;          // of bundles
-    std::vector<std::size_t> chosen_;  // bundles that are followed through a layer
-    Sums sums_, shares_;               // of `alike_`; of means also the shares of active voxels
+    std::vector<std::size_t> chosen_;  // bundles followed through a layer
+    Sums sums_, shares_;               // of `alike_`; for means also shares of active voxels
     std::vector<std::int32_t> wholeU_, wholeV_;
     std::vector<float> u_, v_, firstSlice_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inner loops of line integrals and maxima, compiled once for each SIMD level.
+// The inner loops of line integrals and maxima, compiled once per SIMD level.
 // Based on: W. Kahan, "Further remarks on reducing truncation errors", 1965 (sums of many slices);
 // the integrals of trilinear interpolation are our own (docs/method.md).
 #include "rays/ray_kernels.h"
@@ -22,14 +22,13 @@ using EightTag = hn::CappedTag<float, 8>;
 
 using IntTag = hn::RebindToSigned<EightTag>;
 
-// Four rows of four values that lie beside each other, for as many rays as a vector has lanes: the
-// first value of each ray, the second, the third, the last.
+// Four rows of four neighbouring values for a vector of rays; each holds one value per ray.
 template <class V>
 struct Fours {
     V at[4];
 };
 
-// Loads a ray's four values, and those of the ray four further.
+// Loads four values of a ray, and of the ray four further.
 template <class Tag>
 HWY_INLINE hn::Vec<Tag> loadRay(Tag tag, const float* values, const std::int32_t* offsets) {
     const hn::CappedTag<float, 4> quarter;
@@ -41,7 +40,7 @@ HWY_INLINE hn::Vec<Tag> loadRay(Tag tag, const float* values, const std::int32_t
     }
 }
 
-// Loads four values for each ray, as rows of a matrix that is turned.
+// Loads four values per ray, as rows of a transposed matrix.
 HWY_INLINE Fours<hn::Vec<EightTag>> loadFours(const float* values, const std::int32_t* offsets) {
     const EightTag tag;
     const auto load = [&](int ray) { return loadRay(tag, values, offsets + ray); };
@@ -57,17 +56,17 @@ HWY_INLINE Fours<hn::Vec<EightTag>> loadFours(const float* values, const std::in
              hn::BitCast(tag, hn::InterleaveUpper(pairs, abHigh, cdHigh))}};
 }
 
-// Where rays are between two voxels along an axis, and how far they go for each slice.
+// Position between two voxels along an axis, and progress per slice.
 template <class V>
 struct Along {
-    V first;    // 0 <= first < 1: behind the voxel that is read first
+    V first;    // 0 <= first < 1: distance behind the first read voxel
     V slope;    // 0 <= slope <= 1
     V inverse;  // 1 / slope, or 0
 };
 
-// Of a ray that goes from one slice before a slice to one behind it: integrals over the tent of the
-// slice times (r - p) from p on, where the ray, of which r = 0 to 2 is the way, crosses a voxel's
-// plane; times r - p and what is left of the way; and what is left at all.
+// For a ray from the slice before a slice to the one behind, r = 0 to 2, that crosses a plane of
+// voxels at p: the remaining way, and integrals over the slice's tent from p on, times (r - p), and
+// times (r - p) and the remaining way.
 template <class V>
 struct Crossing {
     V left;
@@ -90,7 +89,7 @@ HWY_INLINE Crossing<V> crossingAt(V left) {
     return {z, plain, weighed};
 }
 
-// The integral over the slice's tent times (r - p) (r - q), from the later of p and q on.
+// Integral over the slice's tent of (r - p) (r - q), from the later of p and q on.
 template <class V>
 HWY_INLINE V bothCrossings(V z, V w) {
     const EightTag tag;
@@ -103,8 +102,8 @@ HWY_INLINE V bothCrossings(V z, V w) {
     return hn::Mul(hn::Sub(whole, hn::Mul(hn::Set(tag, 2.0f), past)), hn::Set(tag, 1.0f / 12));
 }
 
-// Between four voxels a linear interpolation is g0 + (g1 - g0) X + d2 (X - 1)+ + d3 (X - 2)+, d2
-// and d3 being second differences: these four, of the first kCount voxels.
+// Linear interpolation of four voxels is g0 + (g1 - g0) X + d2 (X - 1)+ + d3 (X - 2)+ with second
+// differences d2 and d3. Computes these four from the first kCount voxels.
 template <int kCount, class V>
 HWY_INLINE void takeDifferences(V* g) {
     if constexpr (kCount == 4) g[3] = hn::Sub(hn::Sub(g[3], g[2]), hn::Sub(g[2], g[1]));
@@ -112,8 +111,7 @@ HWY_INLINE void takeDifferences(V* g) {
     g[1] = hn::Sub(g[1], g[0]);
 }
 
-// The integrals, over the tent of a slice, of the products of what takeDifferences() has for u and
-// for v.
+// Integrals over a slice's tent of the products of takeDifferences() terms for u and v.
 template <int kU, int kV, class V>
 HWY_INLINE void takeMoments(const Along<V>& u, const Along<V>& v, V (*m)[4]) {
     const EightTag tag;
@@ -153,15 +151,15 @@ HWY_INLINE void takeMoments(const Along<V>& u, const Along<V>& v, V (*m)[4]) {
 constexpr int kTopShift = 2;
 static_assert(1 << kTopShift == kTopCell);
 
-// Where rays read a patch, and what of it each ray reads first.
+// Where rays read a patch, and the first value of each ray.
 template <class V>
 struct Reading {
-    V u, v;  // 0 <= u, v < 1: behind the voxel that is read first
+    V u, v;  // 0 <= u, v < 1: distance behind the first read voxel
     HWY_ALIGN std::int32_t offsets[8];
-    HWY_ALIGN std::int32_t tops[8];  // where the patch's are looked up
+    HWY_ALIGN std::int32_t tops[8];  // places in the patch's tops
 };
 
-// Where they are so many slices behind the first.
+// Reading at a distance in slices behind the first.
 template <class V>
 HWY_INLINE Reading<V> readingAt(const RayPatch& patch, const RayRun& rays, std::size_t i, V slices,
                                 V slopeU, V slopeV) {
@@ -171,7 +169,7 @@ HWY_INLINE Reading<V> readingAt(const RayPatch& patch, const RayRun& rays, std::
     const auto v = hn::Add(hn::LoadU(tag, rays.v + i), hn::Mul(slices, slopeV));
     const auto floorU = hn::Floor(u);
     const auto floorV = hn::Floor(v);
-    // Outside of the patch there is nothing, nor at its border.
+    // Nothing is outside of the patch, nor at its border.
     const auto place = [&](V behind, const std::int32_t* whole, int size) {
         const auto at = hn::Add(hn::LoadU(ints, whole + i), hn::ConvertTo(ints, behind));
         return hn::Min(hn::Max(at, hn::Zero(ints)), hn::Set(ints, size - 4));
@@ -188,7 +186,7 @@ HWY_INLINE Reading<V> readingAt(const RayPatch& patch, const RayRun& rays, std::
     return reading;
 }
 
-// A sum, and what rounding has added to it, which is taken off with what is added next.
+// A sum and its rounding error, which the next addition subtracts.
 template <class V>
 struct Sum {
     V sum, rest;
@@ -201,7 +199,7 @@ struct Sum {
     }
 };
 
-// What rays have of a slice, whose moments are known.
+// Integral of a slice along rays, from its moments.
 template <int kU, int kV, class V>
 HWY_INLINE V integral(const float* values, int sizeV, const std::int32_t* offsets,
                       const V (*m)[4]) {
@@ -262,7 +260,7 @@ HWY_INLINE void sumRays(const RayPatch& patch, const RayRun& rays, std::size_t i
     hn::StoreU(share.rest, tag, rays.shareRest + i);
 }
 
-// Calls use(i) for the vectors of bundles, of which `i` is the first line.
+// Calls use(i) for the vectors of bundles; `i` is a first line.
 template <class Use>
 HWY_INLINE void forVectors(const RayRun& rays, const Use& use) {
     for (std::size_t n = 0; n < rays.count; ++n) {
@@ -271,7 +269,7 @@ HWY_INLINE void forVectors(const RayRun& rays, const Use& use) {
     }
 }
 
-// Voxels that a ray may read along an axis on its way through the tent of a slice.
+// Voxels along an axis that a ray may read in the tent of a slice.
 HWY_INLINE int voxelsOf(const float* slopes) {
     const EightTag tag;
     float most = 0;
@@ -304,7 +302,7 @@ void sumSlicesKernel(const RayPatch& patch, const RayRun& rays) {
     });
 }
 
-// Loads the 3x3 voxels around a ray, of each of two slices.
+// Loads the 3x3 voxels around a ray, in two slices.
 template <class V>
 HWY_INLINE void loadCells(const float* values, const RayPatch& patch, const std::int32_t* offsets,
                           V (*cells)[3][3]) {
@@ -317,7 +315,7 @@ HWY_INLINE void loadCells(const float* values, const RayPatch& patch, const std:
     }
 }
 
-// What of three voxels each has that lie beside each other, 0 <= x <= 2 behind the first.
+// Shares of three neighbouring voxels, 0 <= x <= 2 behind the first.
 template <class V>
 HWY_INLINE void takeShares(V x, V* shares) {
     const EightTag tag;
@@ -334,7 +332,7 @@ HWY_INLINE V mixed(const V* values, const V* shares) {
                    hn::Mul(values[2], shares[2]));
 }
 
-// Reads cells linearly along all axes.
+// Interpolates cells linearly along all axes.
 template <class V>
 HWY_INLINE V readCells(const V (*cells)[3][3], const V* sharesU, const V* sharesV, V way) {
     V slices[2];
@@ -347,7 +345,7 @@ HWY_INLINE V readCells(const V (*cells)[3][3], const V* sharesU, const V* shares
     return hn::Add(hn::Mul(rest, slices[0]), hn::Mul(way, slices[1]));
 }
 
-// The largest of the cells' values; with `active`, of those where it is 1.
+// Largest value of the cells; with `active`, of active ones.
 template <class V>
 HWY_INLINE V largestOf(const V (*cells)[3][3], const V (*active)[3][3]) {
     const EightTag tag;
@@ -367,7 +365,6 @@ HWY_INLINE V largestOf(const V (*cells)[3][3], const V (*active)[3][3]) {
     return largest;
 }
 
-// Where all of the cells are active.
 template <class V>
 HWY_INLINE auto areWhole(const V (*active)[3][3]) {
     auto least = active[0][0][0];
@@ -378,10 +375,10 @@ HWY_INLINE auto areWhole(const V (*active)[3][3]) {
     return hn::Eq(least, hn::Set(EightTag(), 1.0f));
 }
 
-// What has less of a voxel than this has it by rounding alone.
+// A smaller share of a voxel is due to rounding.
 constexpr float kLeastShare = 0x1p-20f;
 
-// The largest values that rays can read from a slice to the next.
+// The largest values that rays can read between a slice and the next.
 template <class V>
 HWY_INLINE V topsAt(const RayPatch& patch, const Reading<V>& at, int slice) {
     const EightTag tag;
@@ -391,7 +388,6 @@ HWY_INLINE V topsAt(const RayPatch& patch, const Reading<V>& at, int slice) {
     return hn::Load(tag, found);
 }
 
-// Follows rays from one slice to the next.
 template <class V>
 HWY_INLINE void maxBetween(const RayPatch& patch, const RayRun& rays, std::size_t i, int slice) {
     const EightTag tag;
@@ -404,7 +400,7 @@ HWY_INLINE void maxBetween(const RayPatch& patch, const RayRun& rays, std::size_
     auto met = hn::LoadU(tag, rays.met + i);
     auto place = hn::LoadU(tag, rays.rest + i);
     const bool allMet = hn::AllTrue(tag, hn::Gt(met, hn::Zero(tag)));
-    // More, or as much at a nearer place, which is the one that is seen.
+    // A larger value, or an equal one at a nearer, visible place.
     const auto isBetter = [&](V value, V at) {
         return hn::Or(hn::Gt(value, largest), hn::And(hn::Eq(value, largest), hn::Lt(at, place)));
     };
@@ -414,7 +410,7 @@ HWY_INLINE void maxBetween(const RayPatch& patch, const RayRun& rays, std::size_
     loadCells(patch.values + first, patch, at.offsets, values);
     const bool readsActive = patch.active && (patch.leavesOut || !allMet);
     if (readsActive) loadCells(patch.active + first, patch, at.offsets, active);
-    // For each line by itself, so that what is found does not depend on the number of lanes.
+    // Per line, so that results do not depend on the number of lanes.
     const auto top = largestOf(values, patch.leavesOut ? active : nullptr);
     const auto mayFind = isBetter(top, depth);
     if (allMet && hn::AllFalse(tag, mayFind)) return;
@@ -438,7 +434,7 @@ HWY_INLINE void maxBetween(const RayPatch& patch, const RayRun& rays, std::size_
             }
         }
         if (readsActive || !patch.active) met = hn::IfThenElse(isSeen, one, met);
-        // Rounding makes nothing larger than what it is made of: what is skipped is nothing else.
+        // Rounding must not exceed the largest input, so that skipping changes nothing.
         value = hn::Min(value, top);
         const auto here = hn::Add(depth, way);
         const auto better = hn::And(hn::And(counts, mayFind), isBetter(value, here));

@@ -33,7 +33,7 @@ TopGrid::TopGrid(std::span<const CodeBlock> blocks, std::span<const float> tops)
         low = glm::min(low, block.position);
         high = glm::max(high, block.position);
     }
-    // Hardly more memory than the list of blocks takes.
+    // Hardly more memory than the list of blocks.
     const double most = 4096 + 8.0 * double(blocks.size());
     for (shift_ = 0;; ++shift_) {
         first_ = low >> shift_;
@@ -69,7 +69,7 @@ float floatOf(double value) {
     return float(std::clamp(value, -kLargestRayValue, kLargestRayValue));
 }
 
-// Code and offset are added as floats: exact as long as their sum is.
+// Exact while the sum of code and offset is exact in floats.
 bool isDirect(const CodeBook& book) {
     constexpr double kExactFloats = 1 << 24;
     return book.kind == CodeBook::Kind::kInteger &&
@@ -80,18 +80,18 @@ float emptyOf(RayRule rule, float lowest) {
     return rule == RayRule::kMax ? std::min(lowest, 0.0f) : 0.0f;
 }
 
-// Fills in what values the volume has, and returns the slots of those that matter.
+// Fills in the volume's values, and returns the slots of those that matter.
 std::vector<Slot> readValues(const Volume& volume, RayRule rule, const ValueMap& map,
                              RayVolume& rays) {
     std::vector<Slot> slots(kSlotCount, kEmptySlot);
-    rays.values.direct = isDirect(volume.codeBook) && map == ValueMap();
-    rays.values.offset = float(volume.codeBook.offset);
+    rays.values.direct = isDirect(volume.codeBook()) && map == ValueMap();
+    rays.values.offset = float(volume.codeBook().offset);
     if (!rays.values.direct) rays.table.assign(kCodeCount, 0);
     bool any = false;
     for (int code = 0; code < kCodeCount; ++code) {
-        const std::uint64_t voxels = volume.histogram[std::size_t(code)];
+        const std::uint64_t voxels = volume.histogram()[std::size_t(code)];
         if (voxels == 0) continue;
-        const float value = floatOf(map(volume.codeBook.valueOf(Code(code))));
+        const float value = floatOf(map(volume.codeBook().valueOf(Code(code))));
         rays.lowest = any ? std::min(rays.lowest, value) : value;
         rays.highest = any ? std::max(rays.highest, value) : value;
         any = true;
@@ -124,14 +124,14 @@ void placeValue(float value, const ValuePlace& place) {
 // Lets rays read the source's own values.
 void readSource(const Volume& volume, RayRule rule, const ValueMap& map, std::vector<Slot>& slots,
                 RayVolume& rays) {
-    const auto [low, high] = std::minmax({map(volume.valueMin), map(volume.valueMax)});
+    const auto [low, high] = std::minmax({map(volume.valueMin()), map(volume.valueMax())});
     rays.lowest = floatOf(low);
     rays.highest = floatOf(high);
     rays.empty = emptyOf(rule, rays.lowest);
-    // A code of value 0 may stand for something else as well.
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code)
-        slots[code + 1] = volume.histogram[code] > 0 ? Slot(code + 1) : kEmptySlot;
-    volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
+    // A code of value 0 may stand for other source values.
+    for (std::size_t code = 0; code < volume.histogram().size(); ++code)
+        slots[code + 1] = volume.histogram()[code] > 0 ? Slot(code + 1) : kEmptySlot;
+    volume.source()->grid.apply<ScalarTrees>([&](const auto& tree) {
         rays.sourceValues = [&tree, map](const CodeBlock& block, int axis,
                                          const ValuePlace& place) {
             const openvdb::Coord origin = blockOrigin(block.position, 0);
@@ -142,9 +142,9 @@ void readSource(const Volume& volume, RayRule rule, const ValueMap& map, std::ve
     });
 }
 
-// Takes out uniform blocks of nothing: of a sum they are no part.
+// Drops uniform blocks of zero, which add nothing to a sum.
 void dropZeros(const Volume& volume, const ValueMap& map, std::vector<CodeBlock>& blocks) {
-    volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
+    volume.source()->grid.apply<ScalarTrees>([&](const auto& tree) {
         std::erase_if(blocks, [&](const CodeBlock& block) {
             if (block.leaf) return false;
             const openvdb::Coord origin = blockOrigin(block.position, 0);
@@ -153,7 +153,7 @@ void dropZeros(const Volume& volume, const ValueMap& map, std::vector<CodeBlock>
     });
 }
 
-// A word for each slice of a block: bit 8 * u + v is set where the voxel is active.
+// A word per slice of a block: bit 8 * u + v is set where the voxel is active.
 using ActiveWords = std::array<std::uint64_t, 8>;
 
 ActiveWords activeWords(const CodeTree::Leaf& leaf, int sliceAxis) {
@@ -174,13 +174,13 @@ ActiveWords activeWords(const CodeTree::Leaf& leaf, int sliceAxis) {
     return words;
 }
 
-// What codes between two stand for at most, of those that the volume has.
+// Largest value of occurring codes between two codes.
 class CodeTops {
   public:
     CodeTops(const Volume& volume, const RayVolume& rays)
         : upTo_(kCodeCount, kNothing), from_(kCodeCount, kNothing) {
         const auto topOf = [&](std::size_t code) {
-            return volume.histogram[code] > 0 ? rays.valueOf(Code(code)) : kNothing;
+            return volume.histogram()[code] > 0 ? rays.valueOf(Code(code)) : kNothing;
         };
         float top = kNothing;
         for (std::size_t code = 0; code < kCodeCount; ++code)
@@ -217,7 +217,7 @@ void findTops(const Volume& volume, RayRule rule, RayVolume& rays) {
                                  : rays.valueOf(Code(block.tileSlot - 1));
         }
     }
-    // Where there is nothing `empty` is read.
+    // Inactive places read `empty`.
     if (rule == RayRule::kMax)
         for (float& top : tops) top = std::max(top, rays.empty);
     rays.tops = TopGrid(rays.blocks, tops);
@@ -242,11 +242,11 @@ LayerNumbers layersOf(std::size_t count,
 
 RayVolume makeRayVolume(const Volume& volume, RayRule rule, const ValueMap& map) {
     RayVolume rays;
-    rays.box = volume.box;
+    rays.box = volume.box();
     std::vector<Slot> slots = readValues(volume, rule, map, rays);
-    const bool fromSource = volume.source && !volume.codeBook.isExact() && !isOfCodes(volume);
+    const bool fromSource = volume.source() && !volume.codeBook().isExact() && !isOfCodes(volume);
     if (fromSource) readSource(volume, rule, map, slots, rays);
-    rays.blocks = BlockReader(*volume.codes, nullptr, 0, slots).takeBlocks();
+    rays.blocks = BlockReader(*volume.codes(), nullptr, 0, slots).takeBlocks();
     if (fromSource && rule == RayRule::kSum) dropZeros(volume, map, rays.blocks);
     rays.layers = layersOf(rays.blocks.size(),
                            [&](std::size_t i) -> const CodeBlock& { return rays.blocks[i]; });

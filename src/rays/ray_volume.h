@@ -15,39 +15,36 @@
 
 namespace deltasplat {
 
-/// What blocks hold at most, in cells as large as a block or, where blocks lie far apart, a power
-/// of two times that: lines of sight ask it what they need not read.
+/// Largest values per cell, of a block or a power of two of scattered ones, for skipping.
 class TopGrid {
   public:
     TopGrid() = default;
-    /// @param blocks  whose positions are (x, y, z)
-    /// @param tops    of each block
+    /// @param blocks  with positions (x, y, z)
+    /// @param tops    one per block
     TopGrid(std::span<const CodeBlock> blocks, std::span<const float> tops);
 
-    /// Returns the largest top of the blocks between two positions, or of more; -infinity where
-    /// there are none.
+    /// Returns the largest top between two positions, or beyond; -infinity without blocks.
     float topBetween(glm::ivec3 low, glm::ivec3 high) const;
 
   private:
     glm::ivec3 first_{0};  // in cells
     glm::ivec3 size_{0};
-    int shift_ = 0;  // a cell has 2^shift_ blocks along each axis
+    int shift_ = 0;  // a cell has 2^shift_ blocks per side
     std::vector<float> tops_;
 };
 
-/// What is looked for along the lines of sight.
+/// The result of a line of sight.
 enum class RayRule {
-    kSum,        ///< sums of values; where there is no active voxel there is 0
-    kMax,        ///< the largest value that is met
-    kMaxActive,  ///< likewise, but only active voxels take part in what is read
-    kMean        ///< the mean of the active values that are met
+    kSum,        ///< sums of values; inactive voxels are 0
+    kMax,        ///< the largest value met
+    kMaxActive,  ///< likewise, read from active voxels only
+    kMean        ///< the mean of the active values met
 };
 
 inline bool isExtreme(RayRule rule) {
     return rule == RayRule::kMax || rule == RayRule::kMaxActive;
 }
 
-/// What rays meet in place of a value.
 struct ValueMap {
     double scale = 1;
     double offset = 0;
@@ -57,52 +54,49 @@ struct ValueMap {
     bool operator==(const ValueMap&) const = default;
 };
 
-/// So large that hardly a volume has it, and so small that differences of two are finite floats:
-/// what is beyond is taken for it.
+/// Values are clamped to this: hardly any reaches it, and differences of two stay finite.
 inline constexpr double kLargestRayValue = double(std::numeric_limits<float>::max()) / 4;
 
-/// Reads the 512 values of a block in the order of a slice axis; of places that are not active
-/// anything.
+/// Reads the 512 values of a block in the order of a slice axis; inactive voxels get any value.
 using BlockValues =
     std::function<void(const CodeBlock& block, int sliceAxis, const ValuePlace& place)>;
 
-/// Along each axis the numbers of blocks, in order, at which there are any.
+/// Per axis, the numbers of layers that have blocks, in order.
 using LayerNumbers = std::array<std::vector<int>, 3>;
 
-/// Lists where some blocks lie.
-/// @param blockAt  returns each of `count`
+/// Lists the layers of `count` blocks.
 LayerNumbers layersOf(std::size_t count,
                       const std::function<const CodeBlock&(std::size_t)>& blockAt);
 
-/// A volume as rays see it: float values, in blocks that can be found.
+/// A volume as seen by rays: float values in indexed blocks.
 struct RayVolume {
     IndexBox box;
     CodeValues values;
-    /// Where codes are not exact and the source is at hand: reads that. Otherwise empty.
+    /// Reads the source where codes are not exact and it is kept; else empty.
     BlockValues sourceValues;
-    /// What voxels hold that are not active: 0, or under kMax the smallest value where that is
-    /// negative, so that nothing never outshines something.
+    /// Value of inactive voxels: 0, or for kMax the smallest value if negative, so that emptiness
+    /// never outshines a value.
     float empty = 0;
-    float lowest = 0;           ///< of the active voxels' values, as mapped
+    float lowest = 0;           ///< of the active voxels' mapped values
     float highest = 0;          ///< likewise
-    std::uint64_t visible = 0;  ///< active voxels, under kSum but for those of value 0
+    std::uint64_t visible = 0;  ///< active voxels; for kSum without value 0
 
     float valueOf(Code code) const {
         return values.direct ? float(code) + values.offset : table[code];
     }
 
-    /// The blocks that matter, ordered by y, z and x; their positions are (x, y, z).
+    /// The blocks that matter, ordered by y, z and x, with positions (x, y, z).
     std::vector<CodeBlock> blocks;
-    /// What blocks hold at most, for largest values; else 0 where there is one.
+    /// For largest values; for other rules 0 where there is a block.
     TopGrid tops;
     LayerNumbers layers;
     std::vector<float> table;  ///< [kCodeCount], unless values are direct
 };
 
-/// Lists what rays meet of a volume that is not empty. The volume must outlive what is returned.
+/// Lists what rays meet of a volume that is not empty. The volume must outlive the result.
 RayVolume makeRayVolume(const Volume& volume, RayRule rule, const ValueMap& map = {});
 
-/// Reads the values of some of a block's slices in the order of an axis, `[slice][u][v]`.
+/// Reads some slices of a block in the order of an axis, `[slice][u][v]`.
 /// @param active  likewise 1 where a voxel is active, else 0; may be null
 void readBlock(const RayVolume& volume, const CodeBlock& block, int axis, glm::ivec2 slices,
                float* values, float* active);

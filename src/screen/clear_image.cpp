@@ -14,7 +14,7 @@ namespace deltasplat {
 
 namespace {
 
-// Where the system cannot be asked, memory comes when it is written to.
+// Without this system call, memory comes when it is written to.
 void askForMemory([[maybe_unused]] void* first, [[maybe_unused]] std::size_t bytes) {
 #ifdef MADV_POPULATE_WRITE
     constexpr std::size_t kPart = std::size_t{2} << 20;

@@ -7,15 +7,14 @@
 
 namespace deltasplat {
 
-/// Returns a picture of zeros, as Image's constructor makes it. All threads ask the system for its
-/// memory, which takes longer than the zeros that one of them writes then.
+/// Returns a picture of zeros, like Image's constructor. All threads request the memory from the
+/// system, which takes longer than writing the zeros.
 Image clearImage(glm::ivec2 size);
-/// Makes a picture all zero, on all threads.
+/// Clears a picture, on all threads.
 void clearImage(Image& image);
 
-/// Puts a picture behind another one, a part of which it covers. Where only one of them shows
-/// anything, its bits stay. Multi-threaded.
-/// @param first  pixel of the front one that the other begins at
+/// Puts a picture behind a part of another. Bits of only one of them stay. Multi-threaded.
+/// @param first  pixel of the front picture where the other one begins
 void putBehind(Image& front, glm::ivec2 first, const Image& behind);
 
 }  // namespace deltasplat

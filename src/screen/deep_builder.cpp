@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: Tom Lokovic and Eric Veach, "Deep Shadow Maps", SIGGRAPH 2000, section 3: what is
-// filtered is how much is seen down to a depth, not what is there at it. Layers that are resampled
-// one by one and put over each other would not be the resampled picture: where both end at one edge
-// of a pixel, what shows through one of them would be hidden by half of the other. Deviates in that
-// colour goes the same way, and in that depths are those of slices, the same for all pixels.
+// Based on: Tom Lokovic and Eric Veach, "Deep Shadow Maps", SIGGRAPH 2000, section 3: filter the
+// visibility down to a depth, not the layers. Layers resampled one by one would hide light: if two
+// of them end at one edge of a pixel, one hides half of what passes the other. Deviates in treating
+// colour likewise, and in using slices' depths for all pixels.
 #include "screen/deep_builder.h"
 
 #include <algorithm>
@@ -24,10 +23,9 @@ namespace deltasplat {
 
 namespace {
 
-// Columns so far apart that a run of their own each takes less memory.
+// From this distance on, separate runs take less memory.
 constexpr int kFarApart = 4;
-// Where less than that is seen of what lies behind, half floats have hardly room for more alpha,
-// and filters overshoot by more.
+// Below this visibility half floats hardly resolve alpha, and filters overshoot by more.
 constexpr double kLeastSeen = 0x1p-10;
 
 glm::vec4 colorAt(const Image& image, int x, int y) {
@@ -55,7 +53,7 @@ void DeepBuilder::add(const Image& picture, double front, double back) {
     parallelFor(rows_.size(), [&](std::size_t y) { keepChanges(picture, int(y)); });
 }
 
-// Returns how many pixels are to be kept of a row.
+// Returns how many pixels of a row must be kept.
 std::size_t DeepBuilder::findChanges(const Image& picture, int y) {
     std::vector<Columns>& changed = rows_[std::size_t(y)].changed;
     changed.clear();
@@ -83,7 +81,7 @@ void DeepBuilder::keepChanges(const Image& picture, int y) {
 }
 
 DeepImage DeepBuilder::finish() {
-    // Of rows that are done runs are gone.
+    // Runs of finished rows have been freed.
     require(double(kept_) * (sizeof(DeepSample) - sizeof(glm::vec4)) +
             double(shown_.rgba.size()) / 4 * sizeof(std::size_t));
     DeepImage image{shown_.size, std::vector<DeepRow>(rows_.size())};
@@ -94,7 +92,7 @@ DeepImage DeepBuilder::finish() {
 DeepRow DeepBuilder::makeRow(int y) {
     const std::vector<Run> runs = std::exchange(rows_[std::size_t(y)].runs, {});
     const auto width = std::size_t(shown_.size.x);
-    // Sort states by pixels: those of one stay in the order of stages.
+    // Sort states by pixels, keeping the order of stages.
     std::vector<std::size_t> begins(width + 1);
     for (const Run& run : runs)
         for (std::size_t i = 0; i < run.colors.size(); ++i)
@@ -121,15 +119,15 @@ DeepRow DeepBuilder::makeRow(int y) {
 
 void DeepBuilder::addSamples(glm::ivec2 pixel, std::vector<State>& states, DeepRow& row) const {
     if (states.empty()) return;
-    // Filters overshoot, so that a pixel may become darker by what is put behind. No sample takes
-    // light away: what is too much is left out of those in front.
+    // Filters overshoot, so a pixel may become darker by what is put behind. Samples cannot take
+    // light away: the surplus is removed from the samples in front.
     for (std::size_t i = states.size() - 1; i > 0; --i)
         states[i - 1].color = glm::min(states[i - 1].color, states[i].color);
-    // All samples are of one region; states that change nothing may be another's.
+    // All samples belong to one region; unchanged states may belong to others.
     std::optional<DepthLine> line;
     glm::dvec4 before(0);
     for (const State& state : states) {
-        // The last sample that lets hardly anything through shows all that does get through.
+        // The last sample that lets hardly anything through shows all the light that does.
         const bool isLast = 1 - double(state.color.a) < kLeastSeen;
         const glm::dvec4 color(isLast ? states.back().color : state.color);
         if (color == before) continue;
@@ -146,12 +144,12 @@ DeepSample DeepBuilder::sampleOf(const DepthLine& line, const Stage& stage,
     const double nearest = stage.depths->nearest();
     const auto depthAt = [&](double slice) { return float(std::max(line.at(slice), nearest)); };
     DeepSample sample{glm::vec4(color), depthAt(stage.front), depthAt(stage.back)};
-    // Rounding must not turn it around.
+    // Rounding must not swap the ends.
     sample.zBack = std::max(sample.z, sample.zBack);
     return sample;
 }
 
-// Depths of a parallel picture begin at its camera, which may be anywhere.
+// A parallel camera may stand anywhere, so its depths may be negative.
 DepthBuilder::DepthBuilder(const Camera& camera, double opacity, Growth growth)
     : size_(camera.sizePixels),
       nearest_(camera.projection == Projection::kOrtho ? -std::numeric_limits<double>::infinity()
@@ -178,8 +176,7 @@ void DepthBuilder::add(const Image& picture, double front, double back) {
     });
 }
 
-// Filters overshoot, so that what is put behind may take alpha away. What is gone again was not
-// there; a mean loses it of all alike.
+// Filters overshoot and may take alpha away. Such alpha was never there; means lose it evenly.
 void DepthBuilder::change(Pixel& pixel, float alpha, const Stage& stage) const {
     pixel.region = std::uint32_t(regions_.size() - 1);
     const double before = std::min(pixel.alpha, alpha);
@@ -206,7 +203,7 @@ void DepthBuilder::change(Pixel& pixel, float alpha, const Stage& stage) const {
 double DepthBuilder::passedAt(double before, double after, const Stage& stage) const {
     double share = (opacity_ - before) / (after - before);
     if (growth_ == Growth::kFog) {
-        // What is opaque is met where it begins.
+        // Opaque matter is met where it begins.
         share = after < 1 ? portable::log((1 - opacity_) / (1 - before)) /
                                 portable::log((1 - after) / (1 - before))
                           : 0;

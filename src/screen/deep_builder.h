@@ -17,20 +17,19 @@
 
 namespace deltasplat {
 
-/// Who is shown a picture stage by stage, as more and more is put behind what is there.
+/// Receives a picture stage by stage, as more and more is put behind it.
 class DeepStages {
   public:
     virtual ~DeepStages() = default;
-    /// Says where the slices of stages that follow lie.
+    /// Announces the slices of the stages that follow.
     virtual void begin(std::shared_ptr<const SliceDepths> depths) = 0;
-    /// Takes the picture as it is now that what lies between two positions of slices has been put
-    /// behind the rest.
+    /// Takes the picture after everything between two slice positions was put behind the rest.
     /// @param front,back  positions; lines of sight meet `front` first
-    /// @throw Error(kFailed) if what is kept of it does not fit into memory
+    /// @throw Error(kFailed) if memory does not suffice
     virtual void add(const Image& picture, double front, double back) = 0;
 };
 
-/// Shows stages of a picture behind another one.
+/// Shows the stages of a picture behind another picture.
 class StagesBehind : public DeepStages {
   public:
     StagesBehind(const Image& front, DeepStages& stages)
@@ -51,8 +50,7 @@ class StagesBehind : public DeepStages {
     DeepStages& stages_;
 };
 
-/// Makes samples of what a picture looks like as more and more is put behind what is there: each
-/// sample is what turns one of these pictures into the next.
+/// Turns the stages of a picture into samples: each sample turns one stage into the next.
 class DeepBuilder : public DeepStages {
   public:
     /// @param slicesPerSample  for messages
@@ -61,7 +59,7 @@ class DeepBuilder : public DeepStages {
     void begin(std::shared_ptr<const SliceDepths> depths) override { depths_ = std::move(depths); }
     /// Multi-threaded.
     void add(const Image& picture, double front, double back) override;
-    /// Returns the samples of all. Call it once. Multi-threaded.
+    /// Returns all samples. Call it once. Multi-threaded.
     /// @throw Error(kFailed) as add
     DeepImage finish();
 
@@ -71,7 +69,7 @@ class DeepBuilder : public DeepStages {
         double front;
         double back;
     };
-    // Pixels of a row as they are from a stage on.
+    // Pixels of a row from a stage on.
     struct Run {
         std::size_t stage;
         int first;
@@ -81,14 +79,14 @@ class DeepBuilder : public DeepStages {
         int first;
         int last;
     };
-    // A pixel as it is from a stage on.
+    // A pixel from a stage on.
     struct State {
         std::size_t stage;
         glm::vec4 color;
     };
     struct Row {
         std::vector<Run> runs;         // by stage
-        std::vector<Columns> changed;  // in the stage that is being added
+        std::vector<Columns> changed;  // in the current stage
     };
 
     std::size_t findChanges(const Image& picture, int y);
@@ -98,7 +96,7 @@ class DeepBuilder : public DeepStages {
     DeepSample sampleOf(const DepthLine& line, const Stage& stage, const glm::dvec4& color) const;
     void require(double bytes) const;
 
-    Image shown_;  // the picture of the last stage
+    Image shown_;  // the previous stage
     int slicesPerSample_;
     std::shared_ptr<const SliceDepths> depths_;
     std::vector<Stage> stages_;
@@ -106,38 +104,36 @@ class DeepBuilder : public DeepStages {
     std::size_t kept_ = 0;  // pixels of all runs
 };
 
-/// Tells how deep what hides something of each pixel lies, by how alpha grows from stage to stage.
-/// Multi-threaded, and the same on any number of threads.
+/// Finds the depths of what hides something of each pixel, by the growth of alpha from stage to
+/// stage. Multi-threaded, with the same result on any number of threads.
 class DepthBuilder : public DeepStages {
   public:
-    /// How alpha grows on the way through a stage.
+    /// How alpha grows within a stage.
     enum class Growth {
-        kFog,      ///< as that of a fog that is everywhere alike
-        kSurface,  ///< evenly, as surfaces are met
+        kFog,      ///< as in a homogeneous fog
+        kSurface,  ///< linearly, as surfaces are met
     };
 
-    /// @param opacity  of front()
+    /// @param opacity  for front()
     DepthBuilder(const Camera& camera, double opacity, Growth growth);
 
     void begin(std::shared_ptr<const SliceDepths> depths) override;
     void add(const Image& picture, double front, double back) override;
 
-    /// Depths as SliceDepths counts them, `[height][width]`, kNoDepth where there is none: where
-    /// alpha passes the opacity, and stays above.
+    /// Depth (SliceDepths) where alpha passes the opacity for good, `[height][width]`, or kNoDepth.
     std::vector<float> front() const;
-    /// Behind which alpha grows by less than kLeastGrowth.
+    /// Depth behind which alpha grows by less than kLeastGrowth.
     std::vector<float> back() const;
-    /// The mean, by how much alpha grows.
+    /// Mean depth, weighted by the growth of alpha.
     std::vector<float> mean() const;
-    /// By how many stages alpha grows, until less than kLeastGrowth gets through,
-    /// `[height][width]`.
+    /// Number of stages in which alpha grows, until less than kLeastGrowth gets through.
     std::vector<float> samples() const;
 
     static constexpr double kLeastGrowth = 0x1p-10;
 
   private:
     static constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
-    // Positions are those of slices.
+    // Positions count slices.
     struct Pixel {
         float alpha = 0;
         float alphaAtBack = 0;
@@ -145,7 +141,7 @@ class DepthBuilder : public DeepStages {
         std::uint32_t samples = 0;
         double front = kNowhere;
         double back = kNowhere;
-        double sum = 0;  // of positions, times how much alpha grows there
+        double sum = 0;  // of positions, times the growth of alpha there
     };
     struct Stage {
         double front;

@@ -12,8 +12,7 @@
 namespace deltasplat {
 namespace {
 
-// Fine enough that rounding a position moves a value by less than 1/1000 of what it changes over
-// the filter's width.
+// Rounding a position moves a value by less than 1/1000 of its change over the filter's width.
 constexpr double kStepsPerWidth = 1024;
 
 double catmullRom(double x) {
@@ -32,17 +31,17 @@ double mitchell(double x) {
 
 constexpr double kGaussReach = 1.5;
 
-// Of standard deviation 1/2, less what it is where it ends.
+// Standard deviation 1/2, minus the value at the end.
 double gauss(double x) {
     return std::max(0.0, portable::exp(-2 * x * x) - portable::exp(-2 * kGaussReach * kGaussReach));
 }
 
-// Of a square `width` wide, what it covers of one of width 1 that lies `x` beside it.
+// Overlap of a square of width `width` with one of width 1 at distance x.
 double boxOverlap(double x, double width) {
     return std::max(0.0, std::min(x + 0.5, 0.5 * width) - std::max(x - 0.5, -0.5 * width));
 }
 
-// How far a filter that is `stretch` times wider reaches, in lattice points.
+// Reach of a filter widened by `stretch`, in lattice points.
 double reachOf(WarpFilter filter, double stretch) {
     switch (filter) {
         case WarpFilter::kGauss:
@@ -86,14 +85,14 @@ Weights weightsOf(WarpFilter filter, double position, double stretch, int first,
     return weights;
 }
 
-// Returns weights of half as many points, `count` from `first` on. Each stands for the four that it
-// was made of: of all sums of these it is the one with the least square difference.
+// Returns weights for half as many points, `count` from `first` on. A halved point stands for the
+// four points it was made of; the weights are the least-squares fit.
 Weights halvedWeights(const Weights& whole, int first, int count) {
-    // The products of two points' makings, and of one with itself, times 64.
+    // Dot products of two neighbours' coefficients, and of a point's own, times 64.
     constexpr double kWithNext = 1 * 3 + 3 * 1;
     constexpr double kWithItself = 1 * 1 + 3 * 3 + 3 * 3 + 1 * 1;
     Weights halved{first, std::vector<double>(std::size_t(count))};
-    // Gauss's elimination of a matrix of three diagonals.
+    // Gaussian elimination of a tridiagonal matrix.
     std::vector<double> pivots(std::size_t(count), kWithItself);
     for (int i = 0; i < count; ++i) {
         const int source = 2 * (first + i) - 1;
@@ -111,18 +110,17 @@ Weights halvedWeights(const Weights& whole, int first, int count) {
     return halved;
 }
 
-// Halvings that weights make up for. Earlier ones leave out what is far finer than a picture's
-// pixels, and soften what is as fine as these by a thirtieth.
+// Halvings that weights correct. Earlier halvings drop only details far finer than pixels, and
+// soften details as fine as pixels by a thirtieth.
 constexpr int kMostMadeUpFor = 2;
-// Points beside those that a filter reads that are looked at too, lest weights change where others
-// come to be read.
+// Extra points beside the filter's, so that weights do not change where further points are read.
 constexpr int kBeside = 4;
 
-// Weights of `count` points from `first` on, of which so many halvings left a part.
+// Weights of `count` points from `first` on, after halvings.
 Weights weightsAfter(int halvings, WarpFilter filter, double position, double stretch, int first,
                      int count) {
     if (halvings == 0) return weightsOf(filter, position, stretch, first, count);
-    // What these points were made of, and what the filter reaches besides.
+    // The points' sources, and the rest of the filter's reach.
     const double before = 2 * position + 0.5;
     const int reach = int(std::ceil(reachOf(filter, 2 * stretch))) + kBeside;
     const Weights whole = weightsAfter(halvings - 1, filter, before, 2 * stretch,
@@ -130,8 +128,8 @@ Weights weightsAfter(int halvings, WarpFilter filter, double position, double st
     return halvedWeights(whole, first, count);
 }
 
-// Makes weights fade from where the filter ends to where points are no longer read, and those that
-// are positive from its first zero on, for it has none there: edges would show beyond it.
+// Fades weights from the filter's end to the last point. Positive weights fade from the filter's
+// first zero on, because the filter has none there: edges would show beyond it.
 void fade(Weights& weights, double position, double stretch, double end) {
     constexpr double kFade = 0.5;
     const double last = 0.5 * double(weights.values.size());
@@ -143,10 +141,10 @@ void fade(Weights& weights, double position, double stretch, double end) {
     }
 }
 
-// Changes weights a little, in proportion, so that linear ramps stay where they are.
+// Changes weights slightly, in proportion, so that linear ramps stay in place.
 void balance(Weights& weights, double position) {
     double moment = 0;
-    double sizes[3] = {};  // sums of magnitudes, times distance, times its square
+    double sizes[3] = {};  // sums of |weight| times the distance's powers 0, 1 and 2
     for (std::size_t i = 0; i < weights.values.size(); ++i) {
         const double distance = weights.first + int(i) - position;
         const double size = std::abs(weights.values[i]);
@@ -164,8 +162,7 @@ void balance(Weights& weights, double position) {
     }
 }
 
-// Weights of `taps` points of a raster that was halved so often: as close as can be to the filter's
-// of all, but that they fade where the last of these lie, and keep linear ramps.
+// Weights of `taps` points after halvings: closest to the filter, but faded and balanced.
 Weights halvedFilter(WarpFilter filter, double position, double stretch, int halvings, int taps) {
     const int first = -(taps / 2 - 1);
     Weights weights = weightsAfter(std::min(halvings, kMostMadeUpFor), filter, position, stretch,
@@ -178,14 +175,14 @@ Weights halvedFilter(WarpFilter filter, double position, double stretch, int hal
     return weights;
 }
 
-// A raster that is smaller than a pixel by more than this adds nothing to it that could be seen.
+// A raster smaller than a pixel by more than this adds nothing visible.
 constexpr double kMaxStretch = 16384;
 
 }  // namespace
 
 FilterTable::FilterTable(WarpFilter filter, double wantedStretch, int halvings) {
     const double stretch = std::ldexp(std::min(wantedStretch, kMaxStretch), -halvings);
-    // Room for weights to fade in.
+    // Room for weights to fade.
     const double beyond = halvings > 0 ? 0.25 : 0;
     taps_ = 2 * int(std::ceil(reachOf(filter, stretch) + beyond));
     paddedTaps_ = (taps_ + 3) / 4 * 4;

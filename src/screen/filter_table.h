@@ -7,36 +7,33 @@
 
 namespace deltasplat {
 
-/// What is between lattice points. None lets a value leave the range of its neighbours.
+/// Interpolation between lattice points. No value leaves the range of its neighbours.
 enum class WarpFilter {
     kSharp,     ///< Catmull-Rom, clamped to the nearest lattice points: for pictures
-    kMitchell,  ///< clamped to all lattice points that it reads
+    kMitchell,  ///< clamped to all lattice points that are read
     kGauss,
-    kBox  ///< what a square as wide as the stretch covers of the lattice points' own squares
+    kBox  ///< overlap of a square, as wide as the stretch, with the lattice points' squares
 };
 
-/// Weights of a filter along one axis, for every position between two lattice points in small
-/// steps: what reading them takes.
+/// Weights of a filter along one axis, for finely spaced positions between lattice points.
 class FilterView {
   public:
     int taps() const { return taps_; }
-    /// Taps rounded up to a multiple of four; the weights of the added ones are zero.
+    /// Taps rounded up to a multiple of four; added taps have weight 0.
     int paddedTaps() const { return paddedTaps_; }
-    /// Taps in the middle, an even number, whose range a sum is clamped to if weights may be
-    /// negative: as many as never make it jump where taps change.
+    /// Taps in the middle, an even number, to whose range a sum is clamped if weights may be
+    /// negative. Chosen so that the sum never jumps where taps change.
     int innerTaps() const { return innerTaps_; }
-    /// The first of them.
     int firstInnerTap() const { return (taps_ - innerTaps_) / 2; }
-    /// Whether weights may be negative, so that sums have to be clamped to the inner taps' range.
+    /// Whether weights may be negative, so that sums must be clamped to the inner taps' range.
     bool overshoots() const { return overshoots_; }
-    /// The first lattice point under the filter at a position whose floor is `whole`.
+    /// The first lattice point under the filter at a position with floor `whole`.
     int firstTap(int whole) const { return whole - (taps_ / 2 - 1); }
-    /// Returns paddedTaps() weights for a position that lies `fraction` / 2^32 behind a lattice
-    /// point.
+    /// Returns paddedTaps() weights for a position `fraction` / 2^32 behind a lattice point.
     const float* weights(std::uint32_t fraction) const {
         return &weights_[stepOf(fraction) * paddedTaps_];
     }
-    /// Most that the filter can enlarge a value: the largest sum of its weights' magnitudes.
+    /// Largest factor by which the filter can enlarge a value: its largest sum of |weights|.
     double gain() const { return gain_; }
 
   protected:
@@ -49,17 +46,14 @@ class FilterView {
     int innerTaps_ = 0;
     bool overshoots_ = false;
     double gain_ = 1;
-    int shift_ = 0;                   // there are 2^(32 - shift_) steps
+    int shift_ = 0;                   // 2^(32 - shift_) steps
     const float* weights_ = nullptr;  // [steps + 1][paddedTaps_]
 };
 
-/// A filter and its weights.
 class FilterTable : public FilterView {
   public:
-    /// @param wantedStretch  lattice points a picture pixel, at least 1: the filter is that much
-    /// wider, up to 16384 times
-    /// @param halvings  how often the lattice's points were halved (halved_raster.h): weights are
-    /// of what is left of them, those that come closest to the filter
+    /// @param wantedStretch  lattice points per pixel, >= 1: widens the filter, at most to 16384
+    /// @param halvings  of the lattice (halved_raster.h), which the weights make up for
     FilterTable(WarpFilter filter, double wantedStretch, int halvings = 0);
     FilterTable(const FilterTable&) = delete;
     FilterTable& operator=(const FilterTable&) = delete;

@@ -11,7 +11,6 @@
 namespace deltasplat {
 namespace {
 
-// Lattice points [first, end) along an axis.
 struct Range {
     int first, end;
 
@@ -22,17 +21,17 @@ Range overlapOf(const Range& a, const Range& b) {
     return {std::max(a.first, b.first), std::min(a.end, b.end)};
 }
 
-// The pixels of an axis that these are made of.
+// The pixels of an axis from which pixels are made.
 Range sourcesOf(const Range& made, bool isHalved) {
     return isHalved ? Range{2 * made.first - 1, 2 * made.end + 1} : made;
 }
 
-// The pixels that are made of these.
+// The pixels made of some pixels of an axis.
 Range madeOf(const Range& sources, bool isHalved) {
     return isHalved ? Range{floorDiv(sources.first - 1, 2), floorDiv(sources.end, 2) + 1} : sources;
 }
 
-// Makes rows of a halved raster, in room of its own.
+// Makes rows of a halved raster, with its own buffers.
 class RowHalver {
   public:
     RowHalver(const Raster& whole, glm::bvec2 along, const Range& columns)
@@ -59,7 +58,7 @@ class RowHalver {
   private:
     std::size_t floatsOf(int pixels) const { return std::size_t(whole_.channels) * pixels; }
 
-    // Points to rows, and returns the columns outside of which all are zero.
+    // Finds rows, and returns the columns outside of which all are zero.
     Range readRows(const Range& rows) {
         Range filled{whole_.min.x + whole_.size.x, whole_.min.x};
         for (int y = rows.first; y < rows.end; ++y) {
@@ -101,8 +100,8 @@ class RowHalver {
     const glm::bvec2 along_;
     const Range columns_;
     const float* rows_[4] = {};
-    std::vector<float> zeros_;  // a row that lies outside
-    std::vector<float> sums_;   // of rows, for all that columns are made of
+    std::vector<float> zeros_;  // a row outside the raster
+    std::vector<float> sums_;   // of rows, for the source columns
 };
 
 }  // namespace

@@ -10,29 +10,27 @@
 
 namespace deltasplat {
 
-/// Lattice points [min, max).
 struct LatticeBox {
     glm::ivec2 min;
     glm::ivec2 max;
 };
 
-/// A raster of half as many pixels along an axis or both. Pixel i lies in the middle between 2 i
-/// and 2 i + 1, and is 1/8, 3/8, 3/8, 1/8 of the four from 2 i - 1 on: it has the linear ramps of
-/// the first one and its mass, and little of the details that half as many pixels cannot hold.
+/// A raster of half as many pixels along an axis or both. Pixel i lies between pixels 2 i and 2 i +
+/// 1; it is 1/8, 3/8, 3/8, 1/8 of the four from 2 i - 1 on. That preserves linear ramps and mass,
+/// and drops most details too fine for the halved raster.
 class HalvedRaster {
   public:
-    /// Where lattice points of the raster lie on the halved one's axes.
+    /// Converts a lattice position to the halved raster.
     static constexpr double halved(double position) { return (position - 0.5) / 2; }
 
     /// Multi-threaded.
-    /// @param along   the axes
-    /// @param wanted  of the halved lattice: others have no value, nor have those that are made of
-    ///                such of `raster`
+    /// @param along   axes to halve
+    /// @param wanted  of the halved lattice; other pixels, and pixels made of others, are undefined
     /// @param memory  for the pixels
     HalvedRaster(const Raster& raster, glm::bvec2 along, const LatticeBox& wanted,
                  std::pmr::memory_resource& memory);
 
-    /// Of all pixels, also those that have no value.
+    /// Includes undefined pixels.
     const Raster& raster() const { return halved_; }
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums run in one order whatever a vector's width, so that every SIMD level gives the same bits.
+// Sums run in a fixed order whatever a vector's width, so all SIMD levels give the same bits.
 #include "screen/halving_kernels.h"
 
 #include "base/simd_targets.h"
@@ -7,7 +7,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "screen/halving_kernels.cpp"
 #include "hwy/foreach_target.h"
-// After foreach_target.h, as Highway asks.
+// Highway requires this after foreach_target.h.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();

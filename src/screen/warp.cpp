@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Filters (filter_table.cpp) are applied along the raster's own axes; where it is much finer than
-// the picture, to one of half as many pixels (halved_raster.h). OpenImageIO's warp gives a like
-// picture about 40 times slower (docs/decisions.md).
+// Filters (filter_table.cpp) run along the raster's axes; much finer rasters are halved first
+// (halved_raster.h). OpenImageIO's warp is similar and 40 times slower (docs/decisions.md).
 #include "screen/warp.h"
 
 #include <algorithm>
@@ -20,7 +19,6 @@
 namespace deltasplat {
 namespace {
 
-// Columns [first, last) of a picture row.
 struct Columns {
     int first = 0;
     int last = 0;
@@ -42,7 +40,7 @@ Columns bothOf(const Columns& a, const Columns& b) {
     return {std::max(a.first, b.first), std::min(a.last, b.last)};
 }
 
-// Positions on a raster: those of a box of pixels' centres lie within it.
+// Bounds of raster positions of a box of pixel centres.
 struct PositionBox {
     glm::dvec2 low, high;
 };
@@ -58,19 +56,19 @@ PositionBox positionsOf(glm::ivec2 first, glm::ivec2 last, const PositionOf& pos
     return box;
 }
 
-// The filter along an axis of a raster that a map puts into a picture.
+// The filter along a raster axis under a map into a picture.
 class AxisFilter {
   public:
-    // @param alongX, alongY  what a step of one picture pixel moves along the axis
+    // @param alongX, alongY  movement along the axis per picture pixel
     AxisFilter(WarpFilter filter, double alongX, double alongY)
         : AxisFilter(filter, portable::hypot(alongX, alongY)) {}
 
-    // How often the raster is halved along the axis first.
+    // Halvings of the raster along the axis.
     int halvings() const { return halvings_; }
     const FilterTable& table() const { return wide_ ? *wide_ : *narrow_; }
 
   private:
-    // Pixels of a halved raster for each of the picture's: fewer would not hold what that shows.
+    // Least halved pixels per picture pixel; fewer would lose visible details.
     static constexpr double kLeastHalved = 1.5;
     static constexpr int kMostHalvings = 12;
 
@@ -96,11 +94,11 @@ struct AxisFilters {
         : x(filter, rasterFromPixel[0].x, rasterFromPixel[1].x),
           y(filter, rasterFromPixel[0].y, rasterFromPixel[1].y) {}
     double gain() const { return x.table().gain() * y.table().gain(); }
-    // Lattice points that are read around a place, to either side.
+    // Lattice points that are read to either side of a place.
     glm::ivec2 reach() const { return glm::ivec2(x.table().taps(), y.table().taps()) / 2 + 1; }
 };
 
-// A raster, halved as often as filters ask for, and the map to its lattice.
+// A raster with the filters' halvings, and the map to its lattice.
 class FilteredRaster {
   public:
     FilteredRaster(const Raster& raster, const glm::dmat3& rasterFromPixel,
@@ -115,7 +113,7 @@ class FilteredRaster {
                 for (int column = 0; column < 2; ++column) map_[column][axis] /= 2;
                 map_[2][axis] = HalvedRaster::halved(map_[2][axis]);
             }
-            // Of n points beside what is shown, (n - 3.5) / 2 are left that are made of such.
+            // Of n points beside the shown ones, (n - 3.5) / 2 stay defined.
             const glm::ivec2 beside = (filters.reach() + 4) << (most - done - 1);
             HalvedRaster halved(raster_, along, pointsBehind(part, beside), memory);
             halved_.emplace(std::move(halved));
@@ -129,7 +127,7 @@ class FilteredRaster {
     const glm::dmat3& map() const { return map_; }
 
   private:
-    // The lattice points that a part shows, and so many beside them.
+    // The lattice points that a part shows, and a margin.
     LatticeBox pointsBehind(const PicturePart& part, glm::ivec2 beside) const {
         const PositionBox shown = positionsOf(part.first, part.last() - 1, [&](glm::ivec2 pixel) {
             return glm::dvec2(map_ * glm::dvec3(glm::dvec2(pixel) + 0.5, 1));
@@ -166,7 +164,7 @@ class Warper {
     }
 
   private:
-    // What is looked at at once to find out whether the raster is empty there.
+    // Size of the tiles that are tested for emptiness.
     static constexpr int kBand = 8;
     static constexpr int kStretch = 16;
 
@@ -186,8 +184,7 @@ class Warper {
         return columns;
     }
 
-    // Warps kBand rows, but for stretches where the raster is empty. Bands and stretches lie alike,
-    // whatever the part.
+    // Warps kBand rows except empty stretches. Bands and stretches do not depend on the part.
     void warpBand(int firstRow) {
         const int lastRow = std::min(firstRow + kBand, part_.size.y);
         std::vector<Columns> stretches;
@@ -222,7 +219,7 @@ class Warper {
         const glm::dvec2 last = raster_.extent() - 1;
         const glm::dvec2 reach(filterX_.taps() / 2, filterY_.taps() / 2);
         const Columns reached = columnsWithin(y, {0, part_.size.x}, -reach, last + reach);
-        // A thousandth of a pixel more, so that rounding lets no tap fall outside.
+        // The thousandth of a pixel keeps rounded taps inside.
         const glm::dvec2 padded(filterX_.paddedTaps() - filterX_.taps(), 0);
         Columns inner = columnsWithin(y, reached, reach - 0.999, last - reach - padded - 0.001);
         if (inner.first >= inner.last) inner = {reached.last, reached.last};
@@ -249,10 +246,10 @@ class Warper {
             sampler_.sample(fixedPosition(positionOf(x, y), raster_), part_.pixel(x, y));
     }
 
-    // Samples columns of a row whose positions are counted from the first of `inner`.
+    // Samples columns of a row, with positions counted from the first column of `inner`.
     void sampleColumns(int y, const Columns& inner, const Columns& columns) {
         if (columns.first >= columns.last) return;
-        // A single pixel takes no step, which may be too long to be written as a fixed number.
+        // A single pixel needs no step, which might overflow a fixed number.
         const FixedPosition along =
             fixedPosition(inner.last - inner.first > 1 ? step() : glm::dvec2(0));
         FixedPosition position = fixedPosition(positionOf(inner.first, y), raster_);

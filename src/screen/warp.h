@@ -11,35 +11,32 @@
 
 namespace deltasplat {
 
-/// A float raster that lies somewhere on an integer lattice: `[size.y][size.x][channels]`,
-/// transparent outside.
+/// A float raster on an integer lattice: `[size.y][size.x][channels]`, transparent outside.
 struct Raster {
     glm::ivec2 min{0};  ///< lattice position of the first pixel's centre
     glm::ivec2 size{0};
     const float* values = nullptr;
     int channels = 4;  ///< 4: premultiplied RGBA; 1: opacity, or another value
-    /// The colour that opacity 1 has, if opacity is all there is.
+    /// The colour of opacity 1, if channels is 1.
     glm::vec3 color{1.0f};
     /// [size.y], or empty: columns [x, y) outside of which a row is zero.
     std::span<const glm::ivec2> spans{};
 
-    /// Of a part of a larger raster, which has all that is read of that one: where it begins, and
-    /// how large it is. Positions are rounded as they are on it. Without a size it is all there is.
+    /// Place and size of the larger raster of which this is a part, if the part has all that is
+    /// read. Positions are rounded as on the larger raster. Size 0: there is none.
     glm::ivec2 wholeMin{0};
     glm::ivec2 wholeSize{0};
 
     glm::ivec2 origin() const { return wholeSize.x > 0 ? wholeMin : min; }
     glm::ivec2 extent() const { return wholeSize.x > 0 ? wholeSize : size; }
 
-    /// Columns [x, y) outside of which row `i` is zero.
     glm::ivec2 span(int i) const {
         return spans.empty() ? glm::ivec2(0, size.x) : spans[std::size_t(i)];
     }
     const float* row(int i) const { return values + std::size_t(channels) * size.x * i; }
 };
 
-/// Pixels of a picture of `size` that are written: those of `image`, from `first` on. What is
-/// written to a pixel does not depend on which others are.
+/// The pixels of `image`, from `first` on, in a picture of `size`; each is written independently.
 struct PicturePart {
     Image& image;
     glm::ivec2 first;
@@ -49,18 +46,17 @@ struct PicturePart {
     PicturePart(Image& part, glm::ivec2 firstPixel, glm::ivec2 sizePixels)
         : image(part), first(firstPixel), size(sizePixels) {}
     glm::ivec2 last() const { return first + image.size; }
-    /// Of coordinates in the whole picture.
+    /// Takes coordinates of the whole picture.
     float* pixel(int x, int y) const { return image.pixel(x - first.x, y - first.y); }
 };
 
-/// Resamples a raster under an affine map, into every pixel of a part, with a filter that is
-/// widened where the picture is coarser than the raster. No value leaves the range of those around
-/// it, what lies outside of the raster (0) among them. Deterministic; multi-threaded.
+/// Resamples a raster under an affine map into every pixel of a part, with a filter that widens
+/// where the picture is coarser than the raster. No value leaves the range of its neighbours,
+/// including the zeros outside the raster. Deterministic; multi-threaded.
 /// @param raster  within 2^30 of lattice point 0
-/// @param rasterFromPixel  continuous picture coordinates (pixel centres at half-integers) to
-/// lattice positions
-/// @param memory  for a raster of fewer pixels, if the picture is much coarser
-/// @return the most that it can enlarge a difference of rasters
+/// @param rasterFromPixel  from picture coordinates (pixel centres at half-integers) to the lattice
+/// @param memory  for halved rasters, if the picture is much coarser
+/// @return how much this can enlarge a difference of rasters at most
 double warp(const Raster& raster, const glm::dmat3& rasterFromPixel, WarpFilter filter,
             const PicturePart& part,
             std::pmr::memory_resource& memory = *std::pmr::get_default_resource());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The warp's inner loop, compiled once for each SIMD level. Sums run in one order whatever a
-// vector's width, so that every level gives the same bits.
+// The warp's inner loop, compiled once per SIMD level. Sums run in a fixed order whatever a
+// vector's width, so all levels give the same bits.
 #include "screen/warp_kernels.h"
 
 #include <limits>
@@ -10,7 +10,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "screen/warp_kernels.cpp"
 #include "hwy/foreach_target.h"
-// After foreach_target.h, as Highway asks.
+// Highway requires this after foreach_target.h.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -21,7 +21,7 @@ using PixelTag = hn::FixedTag<float, 4>;
 
 using PixelVector = hn::Vec<PixelTag>;
 
-// The taps in the middle of an axis, to whose range sums are clamped.
+// The middle taps of an axis, to whose range sums are clamped.
 struct Inner {
     int first, end;
 
@@ -30,10 +30,10 @@ struct Inner {
     }
 };
 
-// How many taps of a filter are known, 0 if none: columns with those that pad them, and rows.
+// Numbers of taps known at compile time, or 0: columns with padding, and rows.
 template <int kColumnTaps, int kRowTaps>
 struct KnownTaps {
-    // Of so many taps of a sharp filter.
+    // For a sharp filter of that many taps.
     static constexpr int kInnerRows = kRowTaps == 4 ? 2 : 4;
 
     static constexpr bool kFourColumns = kColumnTaps == 4;
@@ -55,7 +55,7 @@ struct KnownTaps {
     }
 };
 
-// Weighs columns by all rows. With kClamp, each is clamped to the range of its inner rows.
+// Sums columns over all rows. With kClamp, each sum is clamped to the range of its inner rows.
 template <class Known, bool kClamp, class Tag>
 HWY_INLINE hn::Vec<Tag> sumRows(Tag tag, const float* corner, std::size_t pitch,
                                 const FilterView& filterY, const float* weightY) {
@@ -77,13 +77,13 @@ HWY_INLINE hn::Vec<Tag> sumRows(Tag tag, const float* corner, std::size_t pitch,
     return sum;
 }
 
-// What becomes of a raster's only channel.
+// The RGBA of a raster's only channel at 1.
 HWY_INLINE PixelVector colorOf(const Raster& raster) {
     HWY_ALIGN const float rgba[4] = {raster.color.x, raster.color.y, raster.color.z, 1};
     return hn::Load(PixelTag(), rgba);
 }
 
-// Four columns of a raster beside each other, in as many vectors as they take.
+// Four neighbouring columns of a raster, in as many vectors as needed.
 template <int kChannels>
 struct FourColumns {
     using Tag = hn::CappedTag<float, 4 * kChannels>;
@@ -96,7 +96,7 @@ struct FourColumns {
         for (auto& part : parts) part = hn::Set(Tag(), value);
     }
 
-    // Puts four columns' weights into all lanes of theirs.
+    // Spreads four columns' weights over the lanes of their columns.
     HWY_INLINE static hn::Vec<Tag> spread(const float* weights, int part) {
         const Tag tag;
         const auto four = hn::LoadDup128(tag, weights);
@@ -107,8 +107,8 @@ struct FourColumns {
         return hn::TableLookupLanes(four, hn::SetTableIndices(tag, columns));
     }
 
-    // Joins the first column with the third, the second with the fourth, and then both, whatever a
-    // vector's width. Of a single channel the result is in all lanes.
+    // Joins columns 0 and 2, columns 1 and 3, and then both results, whatever a vector's width.
+    // With a single channel, all lanes hold the result.
     template <class Join>
     HWY_INLINE PixelVector joined(const Join& join) const {
         if constexpr (kChannels == 1) {
@@ -123,7 +123,7 @@ struct FourColumns {
         }
     }
 
-    // Returns the second or the third of them.
+    // Returns column 1 or 2.
     template <int kColumn>
     HWY_INLINE PixelVector inner() const {
         static_assert(kColumn == 1 || kColumn == 2);
@@ -155,9 +155,8 @@ struct FourColumns {
     }
 };
 
-// Returns one pixel: RGBA, or the sum of a single channel in all lanes. With kClamp, sums are
-// clamped to their inner taps' range, along one axis after the other: so the picture has no jump
-// where inner taps change.
+// Returns one pixel: RGBA, or a single channel's sum in all lanes. With kClamp, sums are clamped to
+// the inner taps' range along one axis after the other, so no jump shows where these change.
 template <class Known, int kChannels, bool kClamp>
 HWY_INLINE PixelVector samplePixel(const FilterView& filterX, std::uint32_t x,
                                    const FilterView& filterY, std::uint32_t y, const float* corner,
@@ -204,7 +203,7 @@ HWY_INLINE PixelVector samplePixel(const FilterView& filterX, std::uint32_t x,
     }
 }
 
-// Positions of a run of pixels: evenly spaced ones, and any.
+// Positions of a run of pixels: evenly spaced or arbitrary.
 struct EvenPositions {
     FixedPosition position, step;
 
@@ -221,7 +220,6 @@ struct AnyPositions {
     FixedPosition next() { return *position++; }
 };
 
-// What is sampled.
 struct Sampling {
     const Raster& raster;
     const FilterTable& filterX;
@@ -234,7 +232,7 @@ template <class Known, int kChannels, bool kClamp, class Positions>
 void sampleOf(const Sampling& what, Positions positions) {
     const Raster& raster = what.raster;
     const std::size_t pitch = std::size_t(kChannels) * raster.size.x;
-    // Copies, so that what is written cannot be thought to change them.
+    // Copies, so that the compiler knows that writes do not change them.
     const FilterView filterX(what.filterX);
     const FilterView filterY(what.filterY);
     const PixelVector color = colorOf(raster);
@@ -261,7 +259,7 @@ void sampleOf(const Sampling& what, Positions positions) {
                   : sampleOf<Known, 1, false>(what, positions);
 }
 
-// Samples by filters of so many taps, if they have so many.
+// Samples if the filters have these numbers of taps.
 template <int kColumnTaps, int kRowTaps, class Positions>
 bool sampleBy(const Sampling& what, const Positions& positions) {
     using Known = KnownTaps<kColumnTaps, kRowTaps>;
@@ -272,7 +270,7 @@ bool sampleBy(const Sampling& what, const Positions& positions) {
 
 template <class Positions>
 void sampleOf(const Sampling& what, const Positions& positions) {
-    // Of sharp filters that are not widened, or are up to twice as wide.
+    // Sharp filters of stretch 1 to 2.
     const bool isDone = sampleBy<4, 4>(what, positions) || sampleBy<4, 6>(what, positions) ||
                         sampleBy<4, 8>(what, positions) || sampleBy<8, 4>(what, positions) ||
                         sampleBy<8, 6>(what, positions) || sampleBy<8, 8>(what, positions);

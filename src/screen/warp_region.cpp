@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: Philippe Lacroute and Marc Levoy, "Fast Volume Rendering Using a Shear-Warp
-// Factorization of the Viewing Transformation", 1994, the warp of perspective projections. Deviates
-// in that a picture may be made of several factorizations' regions, as of a cube's faces.
+// Factorization of the Viewing Transformation", 1994, the warp of perspective projections.
+// Deviates: a picture may consist of several factorizations' regions, like the faces of a cube.
 #include "screen/warp_region.h"
 
 #include <algorithm>
@@ -29,15 +29,15 @@ namespace deltasplat {
 
 namespace {
 
-// Filters of growing width, each made when it is first asked for.
+// Filters of growing width, made on demand.
 class FilterLadder {
   public:
     explicit FilterLadder(WarpFilter filter) : filter_(filter) {}
 
-    // Returns which filter suits so many raster pixels a picture pixel, by their square.
+    // Returns the rung of the filter for a squared number of raster pixels per picture pixel.
     static int rungOf(double squaredStretch) {
         if (!(squaredStretch > 1)) return 0;
-        // The leading bits of a float are its logarithm, nearly: off by less than a rung.
+        // The leading bits of a float are nearly its logarithm: off by less than a rung.
         const auto bits = std::bit_cast<std::uint32_t>(float(std::min(squaredStretch, kMost)));
         constexpr std::uint32_t kOne = 0x3F800000;
         return int((bits - kOne + (1u << 20)) >> 21);
@@ -53,7 +53,7 @@ class FilterLadder {
         return *filters_[i];
     }
 
-    // The largest gain of all that were asked for.
+    // The largest gain of the filters made so far.
     double gain() const {
         double largest = narrowestFilter(filter_).gain();
         for (const auto& filter : filters_) {
@@ -63,7 +63,7 @@ class FilterLadder {
     }
 
   private:
-    static constexpr int kRungs = 8;                  // each twice the width
+    static constexpr int kRungs = 8;                  // per doubling of the width
     static constexpr double kMost = double(1 << 28);  // 16384 squared
     static constexpr std::size_t kCount = 14 * 8 + 2;
 
@@ -87,7 +87,7 @@ class RegionWarper {
           plane_(plane),
           part_(part),
           ladder_(filter) {
-        // Elsewhere it ends where there is nothing more.
+        // Elsewhere the raster ends because nothing more is there.
         const glm::ivec2 end = raster.origin() + raster.extent();
         for (int axis = 0; axis < 2; ++axis) {
             if (raster.origin()[axis] <= plane.limits().min[axis]) goesOnBefore_[axis] = true;
@@ -108,30 +108,29 @@ class RegionWarper {
     double gain() const { return ladder_.gain() * ladder_.gain(); }
 
   private:
-    // What is looked at at once to find out whether the raster is empty there.
+    // Size of the tiles that are tested for emptiness.
     static constexpr int kBand = 8;
     static constexpr int kStretch = 16;
 
-    // What a pixel reads.
     struct Place {
         glm::dvec2 position{0.0};  // on the raster, from its origin
         glm::u8vec2 rungs{0};      // filters along the raster's axes
         bool belongs = false;
     };
 
-    // Raster position, from its origin, that a line of sight in steps leads to.
+    // Raster position, from the raster's origin, for a line of sight in steps.
     glm::dvec2 positionOf(const glm::dvec3& steps) const {
         const glm::dvec2 slope = slopeScale_ * glm::dvec2(steps.z, steps.y) / steps.x;
         return plane_.pixelOf(slope) - glm::dvec2(raster_.origin());
     }
 
-    // Whether a line of sight is one of those that the region is made of.
+    // Whether the region includes a line of sight's slope.
     bool hasSlope(const glm::dvec3& steps) const {
         return !slopeStep_ || (isNearSlope(slopeStep_->x, steps.y, steps.x) &&
                                isNearSlope(slopeStep_->y, steps.z, steps.x));
     }
 
-    // @param alongX,alongY  by how much steps change from one pixel to the next
+    // @param alongX,alongY  change of steps from one pixel to the next
     Place placeOf(const glm::dvec3& steps, const glm::dvec3& alongX,
                   const glm::dvec3& alongY) const {
         Place place;
@@ -145,7 +144,7 @@ class RegionWarper {
         };
         const glm::dvec2 x = moved(alongX);
         const glm::dvec2 y = moved(alongY);
-        // In whichever direction is worst.
+        // In the worst direction.
         glm::dvec2 squares = x * x + y * y;
         for (int axis = 0; axis < 2; ++axis) {
             const double most = mostStretch(place.position, axis);
@@ -155,18 +154,17 @@ class RegionWarper {
         return place;
     }
 
-    // Where the plane ends and the volume goes on, filters stay on the plane: there a pixel may be
-    // wider than what is left of it, since its region is, or since its angle is wide.
+    // Where the plane ends but the volume goes on, filters stay on the plane. There a pixel may be
+    // wider than the rest of the plane, if its region or its angle is wide.
     double mostStretch(glm::dvec2 position, int axis) const {
-        constexpr double kReach = 2.1;  // of a filter of stretch 1, and of rungs that are rounded
+        constexpr double kReach = 2.1;  // of a filter of stretch 1, with rounded rungs
         double room = std::numeric_limits<double>::infinity();
         if (goesOnBefore_[axis]) room = std::min(room, position[axis]);
         if (goesOnBehind_[axis]) room = std::min(room, raster_.extent()[axis] - 1 - position[axis]);
         return std::max(room, 0.0) / kReach;
     }
 
-    // Whether a glance at a tile's corners shows that there is nothing: rays between those of a
-    // flat picture lie between them.
+    // Whether a tile is empty by its corners: in flat pictures, its rays lie between theirs.
     bool isEmpty(glm::ivec2 first, glm::ivec2 last) const {
         if (!flat_ || last - first != glm::ivec2(kStretch, kBand) - 1) return false;
         glm::dvec2 low(0), high(0);
@@ -178,7 +176,7 @@ class RegionWarper {
             low = i == 0 ? place : glm::min(low, place);
             high = i == 0 ? place : glm::max(high, place);
         }
-        // Filters reach as many pixels of the picture as they have taps at its finest.
+        // Filters reach as many picture pixels as they have taps at their narrowest.
         const glm::dvec2 reach = 3.0 + 3.0 * (high - low) / double(kBand - 1);
         const glm::dvec2 before(raster_.min - raster_.origin());
         low = glm::max(glm::floor(low - reach) - before, glm::dvec2(0));
@@ -187,7 +185,7 @@ class RegionWarper {
                !tiles_.anyIn(glm::ivec2(low), glm::ivec2(high));
     }
 
-    // Tiles lie alike, whatever the part.
+    // Tiles do not depend on the part.
     void warpTile(glm::ivec2 first) {
         glm::ivec2 last = glm::min(first + glm::ivec2(kStretch, kBand), part_.size);
         if (isEmpty(first, last - 1)) return;
@@ -203,8 +201,7 @@ class RegionWarper {
         }
     }
 
-    // Samples pixels with the same filters, whose taps lie inside of the raster, together, and
-    // others one by one.
+    // Samples pixels with equal filters and inner taps together, other pixels one by one.
     void warpRow(glm::ivec2 first, std::span<const Place> places) {
         std::array<FixedPosition, kStretch> run;
         std::size_t count = 0;
@@ -253,7 +250,7 @@ class RegionWarper {
     const BasePlane& plane_;
     const PicturePart& part_;
     FilterLadder ladder_;
-    glm::bvec2 goesOnBefore_{false};  // along each axis: whether the plane ends the raster
+    glm::bvec2 goesOnBefore_{false};  // along each axis: whether the plane's limit ends the raster
     glm::bvec2 goesOnBehind_{false};
 };
 
@@ -270,8 +267,7 @@ double warpRegion(const Raster& raster, const Camera& camera, const Factorizatio
 
 PlaneBox readByRegion(const Camera& camera, const Factorization& view, const Factorization& thin,
                       const BasePlane& plane, const PixelBox& pixels) {
-    // As many times as a filter is wide, it reaches twice, and rungs may be wider, and are read
-    // with some taps more.
+    // A filter reaches twice its stretch; the rest allows for rounded rungs and extra taps.
     constexpr double kReach = 2.5;
     constexpr double kLeast = 8;
     constexpr double kFar = 1 << 30;
@@ -376,7 +372,7 @@ void EdgeSampler::sample(FixedPosition position, float* out) const {
     write(sum, out);
 }
 
-// Weighs a column from its first tap on, of which rows [begin, end) lie inside.
+// Sums a column from its first tap on; rows [begin, end) lie inside.
 void EdgeSampler::sumColumn(glm::ivec2 first, const float* weightY, int begin, int end,
                             float* column) const {
     for (int c = 0; c < raster_.channels; ++c) {
@@ -393,7 +389,7 @@ void EdgeSampler::sumColumn(glm::ivec2 first, const float* weightY, int begin, i
     }
 }
 
-// Points to a tap that lies inside.
+// Returns a tap inside the raster.
 const float* EdgeSampler::tapAt(glm::ivec2 p) const {
     return raster_.values + raster_.channels * (std::ptrdiff_t{raster_.size.x} * p.y + p.x);
 }
@@ -417,7 +413,7 @@ FixedPosition fixedPosition(glm::dvec2 position, const Raster& raster) {
 }
 
 const FilterTable& narrowestFilter(WarpFilter filter) {
-    // In the order of their names' declaration.
+    // In the order of the enum.
     static const FilterTable tables[] = {{WarpFilter::kSharp, 1},
                                          {WarpFilter::kMitchell, 1},
                                          {WarpFilter::kGauss, 1},

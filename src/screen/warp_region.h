@@ -14,25 +14,24 @@
 
 namespace deltasplat {
 
-/// Resamples the base plane of a region of a picture that is seen from an eye: writes those pixels
-/// whose lines of sight belong to its slice axis, with a filter that is widened where the picture
-/// is coarser than the plane. Deterministic; multi-threaded.
+/// Resamples the base plane of an eye's region into the pixels whose lines of sight belong to its
+/// slice axis, with a filter widened for coarse pictures. Deterministic; multi-threaded.
 /// @param raster  pixels of the plane
 /// @param view    of the volume's own voxels
-/// @param thin    of what they are divided into, which the plane is of
-/// @return the most by which it can enlarge a difference of rasters
+/// @param thin    of the divided voxels, for the plane
+/// @return how much this can enlarge a difference of rasters at most
 double warpRegion(const Raster& raster, const Camera& camera, const Factorization& view,
                   const Factorization& thin, const BasePlane& plane, WarpFilter filter,
                   const PicturePart& part);
 
-/// Returns the pixels of the plane that some of the picture's read, and a few around them.
+/// Returns a box of plane pixels that includes all that `pixels` read.
 PlaneBox readByRegion(const Camera& camera, const Factorization& view, const Factorization& thin,
                       const BasePlane& plane, const PixelBox& pixels);
 
-/// Knows which squares of a raster hold anything but zeros.
+/// Knows which squares of a raster are not zero.
 class RasterTiles {
   public:
-    /// Looks at all of it. Multi-threaded.
+    /// Multi-threaded.
     explicit RasterTiles(const Raster& raster);
 
     /// Whether any pixel of [first, last], both inclusive, may not be zero.
@@ -48,7 +47,7 @@ class RasterTiles {
     std::vector<std::uint64_t> full_;  // [tile row][words_]
 };
 
-/// Samples a raster near its edge: what lies outside counts as transparent.
+/// Samples a raster near its edge; the outside is transparent.
 class EdgeSampler {
   public:
     EdgeSampler(const Raster& raster, const FilterTable& filterX, const FilterTable& filterY)
@@ -67,12 +66,12 @@ class EdgeSampler {
     const FilterTable& filterY_;
 };
 
-/// Returns a position as a fixed number.
+/// Returns a fixed-point position.
 FixedPosition fixedPosition(glm::dvec2 position);
-/// The same of one that is counted from Raster::origin(), counted from the first pixel.
+/// The same for a position from Raster::origin(); the result counts from the first pixel.
 FixedPosition fixedPosition(glm::dvec2 position, const Raster& raster);
 
-/// Returns a filter that is not widened; made once.
+/// Returns a filter of stretch 1, made once.
 const FilterTable& narrowestFilter(WarpFilter filter);
 
 }  // namespace deltasplat

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums sheets of wide footprints, compiled once for each SIMD level. Integer arithmetic throughout,
-// so that every level gives the same bits.
+// Sums sheets of wide footprints, compiled once per SIMD level. Integer arithmetic gives the same
+// bits at every level.
 // Based on: Lee Westover, "Footprint Evaluation for Volume Rendering", 1990. Deviates in that
 // pixels take from voxels what voxels would stamp: the same integers.
 #include "splat/cell_kernels.h"
@@ -23,7 +23,7 @@ HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Tiles that are made at a time, so that what they are made from stays in the first-level cache.
+// Tiles made at a time, so that their input stays in the first-level cache.
 constexpr int kRun = 16;
 
 template <int kChannels, int kResolution, int kTaps>
@@ -36,10 +36,10 @@ class CellSums {
     static constexpr int kRowPairs = (kTaps + 1) / 2;
     // From one voxel to the next along a row.
     static constexpr int kStep = kResolution * kChannels;
-    // Rows of cells that a tile may lie in, and the rows of pairs that they take.
+    // Rows of cells in a tile, and their rows of pairs.
     static constexpr int kMostCells = (kTilePixels - 2) / kResolution + 2;
     static constexpr int kMostPairs = kMostCells + 2 * (kRowPairs - 1);
-    // Pixels of a run, of the cells around it, and what a vector may reach over the last.
+    // Pixels of a run, of the cells around it, and spare ones for vectors.
     static constexpr int kMostPixels = kRun * kTilePixels + (kTaps + 1) * kResolution + 16;
 
   public:
@@ -54,7 +54,6 @@ class CellSums {
         voxels_ = plane.voxel + (first - kBefore) * std::ptrdiff_t(plane.pitch);
     }
 
-    // Makes the touched rows of tiles [first, last).
     HWY_INLINE void makeRun(int first, int last, std::span<const std::uint8_t> touched,
                             std::span<std::uint8_t> full) {
         unsigned rows = 0;
@@ -76,8 +75,8 @@ class CellSums {
     }
 
   private:
-    // Repeats the pairs of voxels for each pixel of their cells, as far as tiles [first, last) take
-    // them for their rows in rows of cells [firstCell, lastCell].
+    // Repeats the pairs of voxels for each pixel of their cells, as far as tiles [first, last) read
+    // them for rows of cells [firstCell, lastCell].
     HWY_INLINE void pairUp(int first, int last, int firstCell, int lastCell) {
         const int firstPixel = plane_.pixel.x + kTilePixels * first - kBefore * kResolution;
         const int lastPixel =
@@ -101,8 +100,7 @@ class CellSums {
         }
     }
 
-    // Returns colours, none of which is negative, in the low halves, and those behind them in the
-    // high ones.
+    // Returns colours >= 0 in the low halves, and the colours behind them in the high halves.
     template <class T>
     HWY_INLINE hn::Vec<T> pair(T tag, const std::int16_t* voxel) const {
         const hn::Rebind<std::int16_t, T> half;
@@ -111,8 +109,7 @@ class CellSums {
         return hn::Or(here, hn::ShiftLeft<16>(behind));
     }
 
-    // Writes a voxel and the one behind it for each pixel of a cell; what is too much is written
-    // over.
+    // Writes a voxel and the one behind it per pixel of a cell; later calls overwrite the excess.
     HWY_INLINE void repeat(const std::int16_t* voxel, std::int32_t* HWY_RESTRICT out) const {
         if constexpr (kChannels == 4) {
             const hn::FixedTag<std::int32_t, 4> tag;
@@ -125,19 +122,17 @@ class CellSums {
         }
     }
 
-    // Whether most rows of a tile are touched or lie between touched ones, and the tile begins
-    // where makeTile() takes it: of cells of three pixels anywhere, else with a cell, as all do
-    // whose margins are whole tiles.
+    // Whether most rows of a tile are made, and the tile begins where makeTile() takes it: anywhere
+    // in cells of three pixels, else with a cell, as it does if margins are whole tiles.
     HWY_INLINE bool sumsTile(unsigned touched) const {
         constexpr int kMost = 6;
-        // Short registers, which are few as well, would gain little from it.
+        // Short registers are few as well, and gain little.
         constexpr bool kIsWorthIt = HWY_MAX_BYTES >= 32;
         return kIsWorthIt && std::popcount(withRowsBetween(touched)) >= kMost &&
                (kResolution == 3 || rowsInCell_[0] == 0);
     }
 
-    // Makes the rows of a tile whose first pixel is the x-th of its cell, and returns which are not
-    // all zero.
+    // Makes rows of a tile from the x-th pixel of a cell on; returns which are not all zero.
     HWY_INLINE unsigned makeTile(int tile, int x, unsigned touched) const {
         if constexpr (kResolution == 3) {
             if (rowsInCell_[0] == 1) return makeTileFrom<1>(tile, x, touched);
@@ -146,10 +141,9 @@ class CellSums {
         return makeTileFrom<0>(tile, x, touched);
     }
 
-    // Sums up all rows of a tile that begins with row kFirst of a cell, writes those that are
-    // touched or between touched ones, and says which are not all zero. What is read of a row of
-    // pairs goes to all rows of pixels that take it; each sum has a name, so that it stays in a
-    // register.
+    // Sums up all rows of a tile that begins with row kFirst of a cell, writes touched rows and
+    // those between, and returns which are not all zero. Each row of pairs is read once for all
+    // rows of pixels. Named sums stay in registers.
     template <int kFirst>
     HWY_INLINE unsigned makeTileFrom(int tile, int x, unsigned touched) const {
         const Tag tag;
@@ -180,14 +174,14 @@ class CellSums {
         return full;
     }
 
-    // Adds what rows of pixels take of rows of pairs from kPairs on.
+    // Adds the part of rows of pairs from kPairs on to rows of pixels.
     template <int kFirst, int kPairs, class... Sums>
     HWY_INLINE void addRowsOfPairs(int first,
                                    const CellWeights::Line* const (&weights)[kResolution],
                                    Sums&... sums) const {
         constexpr int kLastCell = (kFirst + kTilePixels - 1) / kResolution;
         const std::int32_t* pairs = &pairs_[kPairs][first];
-        // Unrolled by GCC, products would wait for their turn in memory.
+        // Unrolled by GCC, products would be spilled to memory.
 #pragma GCC unroll 1
         for (int tap = 0; tap < kTaps; ++tap) {
             const V colors = hn::LoadU(Tag(), pairs + tap * kStep);
@@ -196,7 +190,7 @@ class CellSums {
         if constexpr (kPairs < kLastCell + 2 * (kRowPairs - 1))
             addRowsOfPairs<kFirst, kPairs + 1>(first, weights, sums...);
     }
-    // To the row that is the kY-th from where the first cell begins, and to those behind it.
+    // Adds to the kY-th row from the first cell on, and to the rows behind it.
     template <int kPairs, int kY, class... Sums>
     static HWY_INLINE void addTo(V colors, int tap,
                                  const CellWeights::Line* const (&weights)[kResolution], V& sum,
@@ -209,8 +203,7 @@ class CellSums {
         if constexpr (sizeof...(Sums) > 0) addTo<kPairs, kY + 1>(colors, tap, weights, behind...);
     }
 
-    // Makes row y of a tile whose first pixel is the x-th of its cell, and returns whether it is
-    // not all zero.
+    // Makes row y of a tile from the x-th pixel of a cell on; returns whether it is not all zero.
     HWY_INLINE bool makeRow(int tile, int x, int y) const {
         const Tag tag;
         std::int32_t* sheet = row_.sheet + kRow * std::size_t(tile) + y * row_.sheetPitch;
@@ -239,11 +232,11 @@ class CellSums {
     const CellWeights& weights_;
     const CellPlane& plane_;
     const TileRow& row_;
-    int cells_[kTilePixels];       // [row]: its row of cells, from the first one's on
-    int rowsInCell_[kTilePixels];  // [row]: where in it
+    int cells_[kTilePixels];       // [row]: row of cells, from the first one on
+    int rowsInCell_[kTilePixels];  // [row]: row in that cell
     const std::int16_t* voxels_;   // kBefore rows before the first row of cells
-    int pairsBegin_ = 0;  // the pixel that pairs_ begin with, counted from the tiles' first
-    // [row]: of voxels in a row, from voxels_ on, and behind it, for every pixel.
+    int pairsBegin_ = 0;           // the first pixel of pairs_, counted from the tiles' first
+    // [row]: for every pixel a voxel of a row from voxels_ on, and the one behind it.
     HWY_ALIGN std::int32_t pairs_[kMostPairs][kChannels * kMostPixels];
 };
 
@@ -294,10 +287,10 @@ HWY_EXPORT(splatCellsKernel);
 
 namespace {
 
-// Returns how many voxels each way there are kernels for, of a footprint; 0: none.
+// Returns the taps of the kernels for a footprint; 0: no kernel.
 int tapsOf(const Footprint& footprint) {
     const int r = footprint.resolution;
-    // Those that reach a cell's first pixel from before, and its last one from behind.
+    // Voxels that reach a cell's first pixel from before, and its last from behind.
     const int before = (footprint.width - 1 - footprint.reach()) / r;
     const int behind = (r - 1 + footprint.reach()) / r;
     if (r > 4 || (r == 1 && footprint.width % 2 == 0)) return 0;
@@ -315,7 +308,7 @@ bool CellWeights::fits(const Footprint& footprint) {
 
 CellWeights::CellWeights(const Footprint& footprint, int sheetChannels)
     : resolution(footprint.resolution), channels(sheetChannels), taps(tapsOf(footprint)) {
-    // What a voxel gives to a pixel of a cell, the voxel's place counted from the cell's.
+    // Weight of a voxel for a pixel of a cell, both counted from the cell.
     const auto weightAt = [&](glm::ivec2 pixel, glm::ivec2 voxel) {
         const glm::ivec2 p = pixel - resolution * voxel + footprint.reach();
         const bool inside = p.x >= 0 && p.y >= 0 && p.x < footprint.width && p.y < footprint.width;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds classes of a range among 64, compiled once for each SIMD level.
+// Finds classes of a range among 64, compiled once per SIMD level.
 #include "splat/digit_voxels.h"
 
 #include <algorithm>
@@ -50,11 +50,11 @@ HWY_EXPORT(findInRangeKernel);
 
 namespace {
 
-// What of the classes is to be found. Of the high digit, what has the low one alone as well.
+// The classes to find. With the high digit, also classes with a low digit only.
 ClassTable::Digit rangeOf(const ClassTable::Plane& plane, bool low) {
     if (low) return {{}, plane.low.first, plane.low.last};
     if (plane.low.colors.empty()) return {{}, plane.high.first, plane.high.last};
-    // A range of nothing begins and ends with 1.
+    // An empty range begins and ends with 1.
     const bool highIsEmpty = plane.high.first == plane.high.last;
     return {{},
             highIsEmpty ? plane.low.first : std::min(plane.high.first, plane.low.first),

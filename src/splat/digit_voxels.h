@@ -21,23 +21,22 @@ struct DigitPlace {
     }
 };
 
-/// Which voxels of slices have which digits, where colours have more than one.
+/// Which voxels of slices have which digits, for colours of several digits.
 class DigitVoxels {
   public:
-    /// Looks at every word, once for each digit. Multi-threaded.
-    /// @param withLow  whether it is asked which voxels have a low digit
+    /// Looks at every word once per digit. Multi-threaded.
+    /// @param withLow  whether voxels with low digits are needed
     /// @throw Error(kFailed) if there is not enough memory
     DigitVoxels(const PackedDeltas& deltas, const ClassTable& classes, bool withLow);
 
-    /// Returns mask words as DeltaWord has them, one for each of the deltas' words: of the low
-    /// digit, voxels that have it; of the high one, those that have anything on the plane. Null if
-    /// that is all that are visible, or is not asked.
+    /// Returns a mask word, as in DeltaWord, per word of the deltas: voxels with the low digit, or,
+    /// for the high digit, with anything on the plane. Null: all visible voxels, or not needed.
     const std::uint64_t* of(DigitPlace digit) const {
         const auto& voxels = voxels_[std::size_t(digit.plane)][digit.low ? 1 : 0];
         return voxels.empty() ? nullptr : voxels.data();
     }
 
-    /// Whether words that have any voxels of the digit have fewer than so many, on average.
+    /// Whether words with voxels of the digit have fewer than `voxels` of them on average.
     bool fewerThan(std::uint64_t voxels, DigitPlace digit) const;
 
   private:

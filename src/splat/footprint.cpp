@@ -31,12 +31,11 @@ struct SlicePlaneGaussian {
     }
 };
 
-// Returns the smallest radius, in sheet pixels, that leaves out at most kFootprintTail of the
-// weight.
+// Returns the smallest radius, in sheet pixels, that omits at most kFootprintTail of the weight.
 int radiusFor(const SlicePlaneGaussian& gaussian, int resolution) {
     const double widest = gaussian.sigma * std::sqrt(1 + glm::dot(gaussian.d, gaussian.d));
     const int reach = int(std::ceil(6 * widest * resolution)) + 1;
-    // weightOfRing[k]: the weight at distance exactly k in the larger of both directions.
+    // weightOfRing[k]: weight at distance k in the larger of both directions.
     std::vector<double> weightOfRing(reach + 1, 0.0);
     for (int v = -reach; v <= reach; ++v) {
         for (int u = -reach; u <= reach; ++u) {
@@ -51,8 +50,7 @@ int radiusFor(const SlicePlaneGaussian& gaussian, int resolution) {
     return std::max(radius, resolution / 2);
 }
 
-// Scales the weights at the given places so that they add up to Footprint::kOne, rounding by the
-// largest remainder.
+// Scales the weights at places to a sum of Footprint::kOne, rounding by the largest remainder.
 void normalizePhase(const std::vector<double>& real, const std::vector<int>& places,
                     std::vector<std::int32_t>& weights) {
     double sum = 0;

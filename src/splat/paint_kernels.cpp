@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Looks up colours and lays those of two rows together, compiled once for each SIMD level.
+// Looks up colours and interleaves those of two rows, compiled once per SIMD level.
 #include "splat/paint_kernels.h"
 
 #include <bit>
@@ -17,11 +17,10 @@ HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Calls use(u, v) for the pairs of voxels (u, v) and (u + 1, v), u even, of which any is asked for,
-// or for all.
+// Calls use(u, v) for pairs (u, v) and (u + 1, v), u even, with any of `voxels`, or for all.
 template <typename Use>
 HWY_INLINE void forPairs(std::uint64_t voxels, const Use& use) {
-    // Where most are, it is faster to take all.
+    // For most pairs, a loop over all is faster.
     constexpr int kFew = 12;
     std::uint64_t pairs = (voxels | voxels >> 8) & 0x00FF00FF00FF00FF;
     if (std::popcount(pairs) >= kFew) {

@@ -9,14 +9,14 @@
 
 namespace deltasplat {
 
-/// Writes colours of voxels of a block where two rows lie together (PairedRow). Others are written
-/// as well, so that all must be what they are now.
-/// @param voxels   a mask word, bit 8 * u + v: those that may have changed
-/// @param classes  [64]: of all voxels of the block
+/// Writes colours of a block's voxels where two rows lie together (PairedRow). Unchanged voxels are
+/// rewritten, so all `classes` must be current.
+/// @param voxels   a mask word, bit 8 * u + v: voxels that may have changed
+/// @param classes  [64], of all voxels of the block
 /// @param plane    the block's first voxel, `[pair of rows][pitch]`
 void paintPairs(std::uint64_t voxels, const ClassIndex* classes, const ClassTable::Color* colors,
                 std::int16_t* plane, std::size_t pitch);
-/// The same of opacity alone.
+/// Paints opacity only.
 /// @param opacities  [classes]
 void paintPairs(std::uint64_t voxels, const ClassIndex* classes, const std::int16_t* opacities,
                 std::int16_t* plane, std::size_t pitch);

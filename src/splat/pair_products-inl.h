@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the kernels of splatting share, compiled once for each SIMD level: include it after Highway.
+// Shared by the splatting kernels, compiled once per SIMD level: include it after Highway.
 // No #pragma once, for each level includes it anew.
 #if defined(DELTASPLAT_PAIR_PRODUCTS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef DELTASPLAT_PAIR_PRODUCTS_INL_H
@@ -17,11 +17,11 @@ HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Multiplies the 16-bit halves of 32-bit lanes, and adds up the two products of each.
+// Multiplies the 16-bit halves of 32-bit lanes and adds up the two products of each lane.
 template <class Tag>
 class PairSum {
   public:
-    // Begins with zero, for NEON adds up neighbouring lanes of both.
+    // Both sums begin with zero, because NEON adds up neighbouring lanes of both.
     HWY_INLINE PairSum() : even_(hn::Zero(Tag())), odd_(hn::Zero(Tag())) {}
     HWY_INLINE void add(hn::Vec<Tag> a, hn::Vec<Tag> b) {
         const hn::Repartition<std::int16_t, Tag> half;
@@ -42,8 +42,7 @@ HWY_INLINE hn::Vec<Tag> productsOfPairs(Tag, hn::Vec<Tag> a, hn::Vec<Tag> b) {
     return sum.total();
 }
 
-// Calls use(first, last) for the rows that a tile's byte has bits for, and those between them: with
-// constants if it has all, so that loops unroll.
+// Calls use(first, last) for rows in a tile's byte and between: constants if all, to unroll.
 template <typename Use>
 HWY_INLINE auto forRows(unsigned rows, const Use& use) {
     return rows == 0xFF ? use(0, kTilePixels - 1)

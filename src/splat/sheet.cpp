@@ -25,7 +25,7 @@ std::string sizeText(const glm::i64vec2& size) {
     return std::to_string(size.x) + "x" + std::to_string(size.y) + " pixels";
 }
 
-// Rows and columns are counted with 31 bits, wherever a slice may be shifted to.
+// Rows and columns need 31 bits, wherever a slice is shifted to.
 void requireShort(const glm::i64vec2& size, std::int64_t shift) {
     const std::int64_t longest =
         std::numeric_limits<std::int32_t>::max() - 2 * kTilePixels - 2 * shift;
@@ -51,8 +51,7 @@ SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int cha
     layout.footprintPixels = footprint.width;
     layout.offsetPixels = footprint.offsetPixels();
     layout.channels = channels;
-    // One tile more than the footprint needs stays zero: compositing goes one pixel over the
-    // occupied ones.
+    // One tile beyond the footprint stays zero: compositing reads one pixel beyond occupied ones.
     layout.marginPixels = roundUpToTile(footprint.reach()) + kTilePixels;
     layout.firstSlice = box.min.x;
     const glm::ivec2 first = glm::ivec2(box.min.z, box.min.y) >> 3;
@@ -75,7 +74,7 @@ glm::ivec2 pixelsReached(const SheetLayout& layout, int block) {
 
 namespace {
 
-// Of one axis, which has so many blocks.
+// Along one axis with this many blocks.
 glm::ivec2 reachingOf(const SheetLayout& layout, int blocks, int first, int last) {
     const int blockPixels = layout.blockPixels();
     const glm::ivec2 reached = pixelsReached(layout, 0);
@@ -114,7 +113,7 @@ Sheet::Sheet(const SheetLayout& layout, std::pmr::memory_resource& memory)
       touchedRows_(layout.tiles().y),
       left_(bytesPerRow_) {}
 
-// Margins begin at tiles, and so do blocks.
+// Margins and blocks begin at tiles.
 glm::ivec2 Sheet::firstTileOf(glm::ivec2 block) const {
     return layout_.resolution * block + layout_.marginPixels / kTilePixels + reach_.firstTile();
 }
@@ -138,18 +137,17 @@ void Sheet::mark(glm::ivec2 block, std::uint64_t voxels, std::span<std::uint8_t>
              [&](std::size_t place, const auto& reached) { marks[place] |= reached[0]; });
 }
 
-// Calls use(place, reached) for every tile that a block may reach: where its byte lies in full_ and
-// touched_, and which of its rows, for each of some masks of voxels. Byte by byte: the next block
-// begins in the middle of these tiles, and to read more at once than was written makes the
-// processor wait.
+// Calls use(place, reached) for every tile that a block may reach: the place of its byte in full_
+// and touched_, and the reached rows per mask. Byte by byte, because the next block begins inside
+// these tiles, and the processor waits on reads larger than the writes before them.
 template <std::size_t kMasks, typename Use>
 void Sheet::forReach(glm::ivec2 block, const std::uint64_t (&voxels)[kMasks],
                      const Use& use) const {
-    // As most footprints do: so that loops unroll.
+    // As most footprints do, so that loops unroll.
     constexpr int kMostReach = 3;
     const glm::ivec2 first = firstTileOf(block);
     const auto forGroup = [&](int column, int row, auto columns, auto rows) {
-        // Of each column of tiles, a byte for each row of them.
+        // Per column of tiles, a byte per row of them.
         std::uint64_t reached[kMasks][8];
         for (std::size_t i = 0; i < kMasks; ++i) {
             for (int x = 0; x < columns; ++x) {
@@ -182,7 +180,7 @@ void Sheet::touchRows(glm::ivec2 block) {
     std::fill_n(&touchedRows_[firstTileOf(block).y], reach_.tiles(), std::uint8_t{1});
 }
 
-// Takes the bits of all but some rows out of `touched`, into left_. Returns whether there are any.
+// Moves the bits of all but some rows from `touched` to left_. Returns whether there are any.
 bool Sheet::leaveOthers(std::span<std::uint8_t> touched, unsigned rows) {
     unsigned left = 0;
     for (std::size_t i = 0; i < touched.size(); ++i) {
@@ -241,7 +239,7 @@ BlockReach::BlockReach(int resolution, int reachPixels, int width)
       columns_(std::size_t(tiles_)),
       pixelRows_(std::size_t(tiles_ + 7) / 8) {
     for (int tile = 0; tile < tiles_; ++tile) {
-        // Which of the tile's pixels each voxel of a row or column reaches.
+        // The tile's pixels that each voxel of a row or column reaches.
         std::array<std::uint8_t, 8> pixels{};
         for (int voxel = 0; voxel < 8; ++voxel) {
             const int first = resolution * voxel - reachPixels - kTilePixels * (firstTile_ + tile);

@@ -20,8 +20,7 @@
 
 namespace deltasplat {
 
-/// Which rows of which tiles the footprints of a block's 8x8 voxels reach. Tiles are counted from
-/// the first that any of them reaches.
+/// The rows of tiles that footprints of a block's 8x8 voxels reach, from the first reached on.
 class BlockReach {
   public:
     /// @param resolution   sheet pixels a voxel
@@ -29,18 +28,17 @@ class BlockReach {
     /// @param width        of the footprint, in pixels
     BlockReach(int resolution, int reachPixels, int width);
 
-    /// The first tile reached, counted from the one in which the block's first voxel lies; <= 0.
+    /// First reached tile, counted from the tile of the block's first voxel; <= 0.
     int firstTile() const { return firstTile_; }
-    /// Tiles reached along a row, and along a column.
+    /// Reached tiles along a row, and along a column.
     int tiles() const { return tiles_; }
 
-    /// Returns the rows of voxels, bit u, in which any of `voxels` (bit 8 * u + v) reaches a column
-    /// of tiles.
+    /// Returns voxel rows, bit u, with any of `voxels` (bit 8 * u + v) that reaches a tile column.
     std::uint8_t rowsReaching(int tileColumn, std::uint64_t voxels) const {
         return rowsWithAny(voxels & columns_[tileColumn]);
     }
-    /// Returns the pixel rows that footprints reach from rows of voxels, of the eight rows of tiles
-    /// from 8 * `group` on: bit y of byte i for row y of the tile in the i-th of them.
+    /// Returns the pixel rows that footprints of rows of voxels reach, in the eight rows of tiles
+    /// from 8 * `group` on: bit y of byte i is row y of the tile in the i-th of them.
     std::uint64_t pixelRows(int group, std::uint8_t voxelRows) const {
         return pixelRows_[group][voxelRows];
     }
@@ -48,36 +46,36 @@ class BlockReach {
   private:
     int firstTile_;
     int tiles_;
-    std::vector<std::uint64_t> columns_;  // [tile column]: the voxels that reach it
+    std::vector<std::uint64_t> columns_;  // [tile column]: voxels that reach it
     // [tile row / 8][rows of voxels]
     std::vector<std::array<std::uint64_t, 256>> pixelRows_;
 };
 
 /// Where sheet pixels lie. Pixels run along v, rows along u: the order of a leaf's voxels. Pixel p
-/// is at voxel position (p - marginPixels + offsetPixels) / resolution + firstVoxel. The
-/// margin takes footprints that reach over the edge, and keeps the outermost pixels zero.
+/// is at voxel position (p - marginPixels + offsetPixels) / resolution + firstVoxel. The margin
+/// takes footprints over the edge, and keeps the outermost pixels zero.
 struct SheetLayout {
     int resolution = 1;        ///< as Footprint::resolution
-    int firstSlice = 0;        ///< of the volume: the slice that lies on the base plane unshifted
+    int firstSlice = 0;        ///< slice of the volume that lies on the base plane unshifted
     glm::ivec2 firstVoxel{0};  ///< (v, u), multiples of 8: tiles begin with blocks
     glm::ivec2 blocks{0};      ///< blocks of 8x8 voxels along (v, u)
     /// A multiple of kTilePixels, at least one more than the footprint reaches.
     int marginPixels = 0;
     glm::ivec2 sizePixels{0};  ///< multiples of kTilePixels
-    glm::ivec2 origin{0};      ///< of the whole sheet: the first pixel of this part of it
+    glm::ivec2 origin{0};      ///< first pixel of this part in the whole sheet
     int reachPixels = 0;       ///< as Footprint::reach
     int footprintPixels = 1;   ///< as Footprint::width
     double offsetPixels = 0;   ///< as Footprint::offsetPixels
-    int channels = 4;          ///< 4 (RGBA), or 1 where all that is seen has one colour
+    int channels = 4;          ///< 4 (RGBA), or 1 where everything seen has one colour
 
     int blockPixels() const { return 8 * resolution; }
     glm::ivec2 tiles() const { return sizePixels / kTilePixels; }
-    /// Pixels from one row to the next; longer than a row by what a vector may reach over its end.
+    /// Pixels from one row to the next; longer than a row, because vectors reach over its end.
     std::size_t pitchPixels() const { return std::size_t(sizePixels.x) + kTilePixels; }
     std::size_t bytes() const {
         return sizeof(std::int32_t) * channels * pitchPixels() * sizePixels.y;
     }
-    /// Place of the first pixel of the footprint of the voxel at (v, u), in pixels.
+    /// First pixel of the footprint of the voxel at (v, u), as a place in pixels.
     std::size_t stampPlace(glm::ivec2 voxel) const {
         const glm::ivec2 p = (voxel - firstVoxel) * resolution + marginPixels - reachPixels;
         return std::size_t(p.y) * pitchPixels() + p.x;
@@ -92,12 +90,10 @@ struct SheetBox {
     glm::ivec2 max{0};
 };
 
-/// Returns the sheet pixels [x, y) along an axis that footprints of a row or column of blocks
-/// reach.
+/// Returns the sheet pixels [x, y) along an axis reached by a row or column of blocks.
 glm::ivec2 pixelsReached(const SheetLayout& layout, int block);
 
-/// Returns the rows of blocks [x, y) whose footprints reach sheet rows [first, last); none if y <=
-/// x.
+/// Returns the rows of blocks [x, y) that reach sheet rows [first, last); none if y <= x.
 glm::ivec2 blocksReaching(const SheetLayout& layout, int first, int last);
 
 /// Blocks [first, last] of a sheet, (v, u).
@@ -106,22 +102,19 @@ struct BlockBox {
     glm::ivec2 last{std::numeric_limits<int>::max()};
 };
 
-/// Lays out the part of a sheet in which the pixels of a box are complete: the blocks whose
-/// footprints reach them. Without blocks if there are none.
-/// @param among  others are left out
+/// Lays out the part of a sheet in which a box's pixels are complete: blocks that reach them.
+/// @param among  blocks to choose from
 SheetLayout layoutPart(const SheetLayout& whole, const SheetBox& box, const BlockBox& among = {});
 
-/// @throw Error(kUsage) if a sheet has more pixels than can be counted in 32 bits: stamps name
-/// their place with as many
+/// @throw Error(kUsage) if pixels cannot be counted in 32 bits, as stamps do
 void requireCountable(const SheetLayout& layout);
 
 /// Lays out a sheet for the voxels of a (slice, u, v) box.
-/// @throw Error(kUsage) if its rows or columns are too many to be counted in 32 bits
+/// @throw Error(kUsage) if rows or columns cannot be counted in 32 bits
 SheetLayout layoutSheet(const IndexBox& box, const Footprint& footprint, int channels = 4);
 
 /// The running splat of the current slice: 32-bit integers `[row][pitch][channels]`, in slice
-/// coordinates. Knows which rows of which tiles may hold anything but zeros: integers return to
-/// exact zero, so that can be told.
+/// coordinates. Tracks rows of tiles that may not be zero, because integers return to exact zero.
 class Sheet {
   public:
     /// @param memory  for the pixels
@@ -129,62 +122,54 @@ class Sheet {
                    std::pmr::memory_resource& memory = *std::pmr::get_default_resource());
 
     const SheetLayout& layout() const { return layout_; }
-    /// Becomes another part of the same sheet, or the whole: no larger than the layout it was made
-    /// with. Every pixel must be zero.
+    /// Becomes another part of the same sheet, up to its first size. Every pixel must be zero.
     void setLayout(const SheetLayout& layout) { layout_ = layout; }
     /// Integers from one row to the next.
     std::size_t pitch() const { return layout_.channels * layout_.pitchPixels(); }
     std::int32_t* pixels() { return pixels_.data(); }
     const std::int32_t* row(int y) const { return &pixels_[pitch() * y]; }
 
-    /// Says that what voxels of a block (v, u) of the layout show may have changed: a mask word,
-    /// bit 8 * u + v.
+    /// Marks tile rows that a block (v, u) may have changed.
+    /// @param voxels  a mask word, bit 8 * u + v
     void touch(glm::ivec2 block, std::uint64_t voxels);
-    /// Says which voxels of a block are visible now, and which are not any more. Rows that the
-    /// former reach are full, for no colour or weight is negative; those that only the latter reach
-    /// are touched.
+    /// Marks what voxels of a block reach: rows of visible ones as full, because no colour or
+    /// weight is negative, and rows reached only by vanished ones as touched.
     void show(glm::ivec2 block, std::uint64_t visible, std::uint64_t vanished);
-    /// Sets in bytes of tiles, which are laid out as fullRows() has them, row of tiles after row of
-    /// tiles, which rows voxels of a block reach.
-    /// @param marks  [markBytes()]
+    /// Sets the rows that voxels of a block reach, in `marks` [markBytes()] laid out as fullRows().
     void mark(glm::ivec2 block, std::uint64_t voxels, std::span<std::uint8_t> marks) const;
     std::size_t markBytes() const { return full_.size(); }
-    /// Calls `refill(tileRow, touched, full)` for rows of tiles in which any of the pixel rows
-    /// [first, last) may be touched; others stay so. Of each tile there is a byte, bit y for its
-    /// row y: where `touched` has bits, `refill` puts into `full` whether those rows are not all
-    /// zero now.
-    /// @param isHidden  whether a tile (column, row) may stay as it is, touched; null: none may
+    /// Calls `refill(tileRow, touched, full)` for rows of tiles with touched pixel rows in [first,
+    /// last). Both spans have a byte per tile, bit y for its row y: for bits in `touched`, `refill`
+    /// sets in `full` whether the row is not all zero.
+    /// @param isHidden  whether a tile (column, row) may stay touched; null: none may
     template <typename IsHidden, typename Refill>
     void refillTouched(int first, int last, const IsHidden& isHidden, const Refill& refill);
     template <typename Refill>
     void refillTouched(int first, int last, const Refill& refill) {
         refillTouched(first, last, nullptr, refill);
     }
-    /// Finds out which of the touched rows are zero. Call it when all stamps of a slice are in.
+    /// Finds touched rows of zeros, once all stamps of a slice are in.
     void settle();
-    /// Becomes the sum of the sheets of both digits of a colour (addLowDigits), of the same layout,
-    /// in the rows of tiles in which any of [firstRow, lastRow) lies.
+    /// Becomes the sum of the sheets of a colour's digits (addLowDigits), of this layout, in the
+    /// rows of tiles that have any of [firstRow, lastRow).
     void addDigits(const Sheet& high, const Sheet& low, int firstRow, int lastRow);
-    /// Makes every pixel zero.
     void clear();
-    /// Returns a byte for each tile of a tile row, and zeros up to a multiple of eight: bit y is
-    /// set where row y of the tile may be other than zero.
+    /// Returns a byte per tile of a tile row, and zeros up to a multiple of eight: bit y is set
+    /// where row y of the tile may be other than zero.
     std::span<const std::uint8_t> fullRows(int tileRow) const {
         return {&full_[bytesPerRow_ * tileRow], bytesPerRow_};
     }
-    /// A block's tile, where footprints have one pixel.
+    /// A block's tile, for footprints of one pixel.
     struct Tile {
-        std::uint8_t& full;  ///< as fullRows() has it
+        std::uint8_t& full;  ///< as in fullRows()
         std::int32_t* pixels;
     };
     Tile tileOf(glm::ivec2 block) { return tileAt(block + layout_.marginPixels / kTilePixels); }
-    /// Returns a bit for each row of a block's tile that is one of the pixel rows [first, last).
+    /// Returns the rows of a block's tile, a bit each, that are in pixel rows [first, last).
     unsigned rowsOfTile(glm::ivec2 block, int first, int last) const {
         return rowsOfTile(block.y + layout_.marginPixels / kTilePixels, first, last);
     }
-    /// Makes a tile zero.
     void clear(const Tile& tile);
-    /// Returns where a row of tiles lies.
     TileRow tileRow(int row) { return {&pixels_[pitch() * row * kTilePixels], pitch()}; }
 
   private:
@@ -200,7 +185,7 @@ class Sheet {
     bool leaveOthers(std::span<std::uint8_t> touched, unsigned rows);
 
     static constexpr unsigned kAllRows = (1u << kTilePixels) - 1;
-    // Returns a bit for each row of a row of tiles that is one of the pixel rows [first, last).
+    // Returns the rows of a row of tiles, a bit each, that are in pixel rows [first, last).
     static unsigned rowsOfTile(int tileRow, int first, int last) {
         const int top = kTilePixels * tileRow;
         return kAllRows << std::max(first - top, 0) &
@@ -213,8 +198,8 @@ class Sheet {
     std::pmr::vector<std::int32_t> pixels_;
     std::vector<std::uint8_t> full_;         // [tile row][bytesPerRow_]
     std::vector<std::uint8_t> touched_;      // likewise
-    std::vector<std::uint8_t> touchedRows_;  // [tile row]: whether any is
-    std::vector<std::uint8_t> left_;         // [bytesPerRow_], zeros: touched ones that stay so
+    std::vector<std::uint8_t> touchedRows_;  // [tile row]: whether any row is touched
+    std::vector<std::uint8_t> left_;         // [bytesPerRow_], zeros: tiles that stay touched
 };
 
 template <typename IsHidden, typename Refill>

@@ -42,7 +42,7 @@ void CoveredCells::settle() {
 
 namespace {
 
-// The cells that read runs of sheet pixels: the given one, and each `step` behind the one before.
+// Finds the cells that read a run of sheet pixels, and runs each `step` farther.
 void findCells(const EvenReaders& readers, glm::ivec2 pixels, int step,
                std::span<glm::ivec2> cells) {
     for (glm::ivec2& place : cells) {
@@ -98,7 +98,6 @@ void SheetCover::clearHidden(int row, std::size_t words, std::span<std::uint64_t
 
 namespace {
 
-// Where the base plane's pixel (0, 0) reads the whole sheet.
 glm::dvec2 startOf(const BasePlane& plane, const SheetLayout& layout, const SlicePlace& place) {
     const double r = layout.resolution;
     if (plane.isParallel()) return -(-place.offset * r - double(layout.marginPixels));
@@ -106,7 +105,7 @@ glm::dvec2 startOf(const BasePlane& plane, const SheetLayout& layout, const Slic
            double(layout.marginPixels) - layout.offsetPixels;
 }
 
-// What is reached of one axis, by pixels [0, size) of a sheet.
+// Widens [low, high) by the reach of pixels [0, size) of a sheet along one axis.
 void addReach(double start, double scale, int size, int least, int most, int& low, int& high) {
     const double first = std::floor((-1 - start) / scale) + 1;
     const double last = std::ceil((double(size) - start) / scale);
@@ -134,7 +133,7 @@ PlaneBox reachOf(const BasePlane& plane, const SheetLayout& layout, int firstSli
         const glm::ivec2 last = -readingOf(plane, layout, lastSlice).offset;
         return {glm::min(first, last), glm::max(first, last) + layout.sizePixels};
     }
-    // Slices between lie between, for they are scaled about one point.
+    // Slices between lie between, because all are scaled about one point.
     const PlaneBox& limits = plane.limits();
     PlaneBox reach{limits.max, limits.min};
     for (const int slice : {firstSlice, lastSlice}) {
@@ -154,7 +153,7 @@ SheetBox readBox(const SheetReading& reading, const PlaneBox& box, const SheetLa
     const double reach = readingReach(reading);
     SheetBox read;
     for (int axis = 0; axis < 2; ++axis) {
-        // Rounded as who reads rounds them.
+        // Rounded as by readers.
         const double start = reading.startOfWhole()[axis];
         const double origin = reading.origin[axis];
         const double size = layout.sizePixels[axis];

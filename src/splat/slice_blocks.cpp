@@ -52,7 +52,7 @@ SliceBlocks::SliceBlocks(const SplatInput& input, const SheetLayout& layout, Dig
     if (voxels) lowVoxels_ = voxels->of(low);
 }
 
-// The words of a slice in rows of blocks; they are ordered by u.
+// Returns the words of a slice in rows of blocks; words are ordered by u.
 std::span<const DeltaWord> SliceBlocks::wordsOf(int slice, glm::ivec2 rows) const {
     const std::span<const DeltaWord> words = input_.deltas.slice(slice);
     const auto before = [](const DeltaWord& word, int u) { return word.block.x < u; };
@@ -74,7 +74,7 @@ SeenWord SliceBlocks::litOf(const DeltaWord& word) const {
             true,         lowVoxelsOf(word), lit.low.data()};
 }
 
-// Of the low digit, voxels that have it; of the high one, those that have anything on the plane.
+// Returns voxels with the low digit, or, for the high digit, with anything on the plane.
 std::uint64_t SliceBlocks::voxelsOfDigit(const DeltaWord& word) const {
     if (!input_.lit) return voxels_[numberOf(word)];
     const LitWord& lit = input_.lit->of(numberOf(word), digit_.plane);
@@ -87,7 +87,7 @@ std::uint64_t SliceBlocks::lowVoxelsOf(const DeltaWord& word) const {
     return lowVoxels_ ? lowVoxels_[numberOf(word)] : 0;
 }
 
-// Leaves what a word is of the digit. Of changes, those of voxels that had it or have it.
+// Restricts a word to the digit; its changes to voxels that had or have it.
 void SliceBlocks::takeDigit(const DeltaWord& word, bool whole, SeenWord& seen) {
     seen.visible = voxelsOfDigit(word);
     if (whole) return;
@@ -103,11 +103,11 @@ void SliceBlocks::clear() {
     rowsBefore_ = {0, 0};
 }
 
-// Returns a mask word of the voxels of a block that lie in the volume's box.
+// Returns a mask word of the block's voxels in the volume's box.
 std::uint64_t SliceBlocks::voxelsInBox(glm::ivec2 block) const {
     const IndexBox& box = input_.deltas.box;
     const glm::ivec2 first = layout_.firstVoxel + 8 * block;
-    // Of the block's rows or columns those of the box; of blocks that fill up a tile none.
+    // Rows or columns of the block in the box; blocks that only fill up a tile have none.
     const auto inside = [](int from, int to) {
         if (from > 7 || to < 0) return 0u;
         return 0xFFu >> (7 - std::min(to, 7)) & 0xFFu << std::max(from, 0) & 0xFFu;
@@ -119,7 +119,7 @@ std::uint64_t SliceBlocks::voxelsInBox(glm::ivec2 block) const {
     return word;
 }
 
-// Whether words from one of the row in hand on are all covered, or lie between such.
+// Whether all words, from the current row's on, are covered or between covered ones.
 bool SliceBlocks::hidesAll(const SheetCover::Row& row, std::span<const DeltaWord> words) const {
     const glm::ivec2 first = blockOf(words.front());
     const glm::ivec2 last = blockOf(words.back());
@@ -127,7 +127,7 @@ bool SliceBlocks::hidesAll(const SheetCover::Row& row, std::span<const DeltaWord
 }
 
 // Based on: "Accelerating Footprint Method Based on Comparability of Consecutive Image Slices",
-// equation 9, for footprints that do not overlap: what a voxel was is written over.
+// equation 9, for footprints that do not overlap: a voxel's old colour is overwritten.
 namespace {
 
 template <typename Value>
@@ -136,7 +136,7 @@ constexpr std::size_t kNumbersOf = sizeof(Value) / sizeof(std::int32_t);
 }  // namespace
 
 double PixelSplatter::bytes(const SplatInput& input, const SheetLayout& layout) {
-    // Which slice blocks show, which of them do, twice, and what waits.
+    // Slices of blocks, two lists of shown blocks, and waiting changes.
     const double ofBlock = sizeof(int) + 4 * sizeof(glm::ivec2) + SliceBlocks::kBytesOfBlock;
     const double ofClass = sizeof(std::int32_t) * layout.channels;
     return ofBlock * double(layout.blocks.x) * layout.blocks.y +
@@ -164,7 +164,7 @@ PixelSplatter::PixelSplatter(const SplatInput& input, const SheetLayout& largest
     }
 }
 
-// What stamping both digits and adding them up gives (Sheet::addDigits).
+// The sum of stamps of both digits (Sheet::addDigits).
 PixelSplatter::Pixel PixelSplatter::pixelOf(const ClassTable::Color& high,
                                             const ClassTable::Color* low) const {
     constexpr int kBits = ClassTable::kDigitBits;
@@ -201,8 +201,7 @@ void PixelSplatter::splatChanges(int slice, const NeededPixels& needed) {
         });
 }
 
-// Rows that the slice before showed are written over, or taken away with their block. Those that
-// nobody reads stay as they are: at the edges of parts, most of a block.
+// The previous slice is overwritten, or cleared by blocks. Unread rows, many at edges, stay.
 void PixelSplatter::splatWhole(int slice, const NeededPixels& needed) {
     before_.swap(shownBlocks_);
     shownBlocks_.clear();
@@ -231,11 +230,10 @@ void PixelSplatter::clear() {
     shownBlocks_.clear();
 }
 
-// Calls use(values) with the pixels, or opacities, of a word's classes.
 template <typename Use>
 void PixelSplatter::withValues(const SeenWord& word, const Use& use) {
     if (word.hasOwn) {
-        // Which are not all the same, and have a low digit.
+        // All may differ, and have a low digit.
         for (std::size_t n = 0; n < own_.size(); ++n)
             own_[n] = pixelOf(word.colors[n], word.lowColors + n);
         use(own_.data());

@@ -23,21 +23,19 @@
 
 namespace deltasplat {
 
-/// The words of a slice that are seen as something of their own, lit when they are first asked for
-/// and kept until the next slice. Not for several threads at once.
+/// A slice's words with own colours, lit on request, kept until the next. Not thread-safe.
 class LitSlice {
   public:
-    /// @param colors  must outlive the slice, as `deltas`
+    /// @param colors  must outlive this, as `deltas`
     LitSlice(const PackedDeltas& deltas, const WordColors& colors)
         : deltas_(deltas), colors_(colors) {}
 
-    /// Takes on a slice, unless it is in hand.
     void begin(int slice);
-    /// Returns what a word of the slice looks like on a plane; valid until the next slice.
-    /// @param word  its number among all words
+    /// Returns the look of a word on a plane; valid until the next slice.
+    /// @param word  of the slice, numbered among all words
     const LitWord& of(std::size_t word, int plane);
 
-    /// Bytes that it takes at most if a slice has so many words.
+    /// Most bytes for a slice of this many words.
     static double bytes(double words, int planes) { return sizeof(LitWord) * words * planes; }
 
   private:
@@ -47,46 +45,44 @@ class LitSlice {
     const WordColors& colors_;
     int slice_ = 0;
     bool hasSlice_ = false;
-    std::size_t first_ = 0;               // word of the slice
+    std::size_t first_ = 0;               // first word of the slice
     std::vector<std::uint32_t> placeOf_;  // [words of the slice]: in lit_, or kUnlit
     std::deque<LitWord> lit_;             // [lit words][planes]; deques move nothing
     std::size_t used_ = 0;
 };
 
-/// Everything that splatting slabs needs and does not change.
+/// Unchanging input of splatting slabs.
 struct SplatInput {
     const PackedDeltas& deltas;
     const StepColors& colors;
     const Footprint& footprint;
-    /// Which voxels have which digits; null where there is but one, and with own colours.
+    /// Which voxels have which digits; null with one digit, and with own colours.
     const DigitVoxels* digitVoxels;
-    /// Stamp every voxel of the box, the empty ones too (method `traditional`); all slabs must be
-    /// whole.
+    /// Stamp every voxel of the box, even empty ones (method `traditional`), in whole slabs.
     bool stampEmptyVoxels;
-    /// For sheets and what they are made with.
+    /// For sheets and splatters.
     std::pmr::memory_resource& memory = *std::pmr::get_default_resource();
-    /// Where voxels have colours of their own: those of the slice in hand, which all that one
-    /// thread splats with share. Splatter makes it.
+    /// Own colours of a thread's current slice, made by Splatter. Null: no own colours.
     LitSlice* lit = nullptr;
 };
 
-/// Of a slice of a block, what is stamped of a digit of colours.
+/// A block's slice as stamped for one digit of colours.
 struct SeenWord {
-    std::uint64_t visible;      ///< mask word of voxels that are seen
+    std::uint64_t visible;      ///< mask word of visible voxels
     std::uint64_t changed;      ///< as DeltaWord::changed
     const ClassIndex* classes;  ///< [64]: places in `colors`
     const ClassTable::Color* colors;
-    bool hasOwn;  ///< whether colours are those of this word's voxels alone, in their order
-    /// Where the low digit goes with the high one: which voxels have it, if that is known
-    /// (SplatInput::digitVoxels) or they have own colours, and its colours. Else none.
+    bool hasOwn;  ///< whether colours are only this word's, in the order of voxels
+    /// If the low digit goes with the high one: its colours, and the voxels that have it if known
+    /// (SplatInput::digitVoxels, own colours). Else none.
     std::uint64_t lowVoxels = 0;
     const ClassTable::Color* lowColors = nullptr;
 };
 
-/// The blocks of slices that a sheet of a digit of colours, or a part of it, is made of.
+/// The blocks of slices that make up a sheet, or a part of it, of a digit.
 class SliceBlocks {
   public:
-    /// @param withLow  whether the low digit goes with this, the high one; there must be one
+    /// @param withLow  whether the low digit, which must exist, goes with this high one
     SliceBlocks(const SplatInput& input, const SheetLayout& layout, DigitPlace digit = {},
                 bool withLow = false);
 
@@ -96,45 +92,42 @@ class SliceBlocks {
     }
     const SheetLayout& layout() const { return layout_; }
 
-    /// Calls `use(block, voxels, word)` for the blocks (v, u) of a slice that reach what is needed
-    /// and have something to stamp: a mask word of voxels, and a SeenWord of what else is known of
-    /// them, as far as the digit goes.
+    /// Calls `use(block, voxels, word)` for blocks (v, u) of a slice that reach needed pixels and
+    /// have something to stamp: a mask word, and the SeenWord, as far as the digit goes.
     template <typename Use>
     void forWhole(int slice, const NeededPixels& needed, const Use& use) {
         forWords(slice, true, needed, use);
     }
-    /// The same of what has changed since the slice before, for slabs that are not whole; all
-    /// slices, in order. Changes of blocks that are needed later, or never, wait until they are:
-    /// each word knows all voxels of its block, so that the last one says it all. Not so where
-    /// voxels have colours of their own, which are those of this slice.
+    /// Calls `use` for changes since the previous slice, in slabs that are not whole, for all
+    /// slices in order. Changes of blocks not yet needed wait: each word knows all voxels of its
+    /// block, so the last one suffices. Own colours never wait, because they belong to one slice.
     template <typename Use>
     void forChanges(int slice, const NeededPixels& needed, const Use& use);
-    /// Returns what is seen of a block whose voxels are all empty.
+    /// Returns the look of a block of empty voxels.
     SeenWord nothingSeen() const {
         return {0, 0, kEmptyClasses.data(), colors_, false, 0, lowColors_};
     }
-    /// Makes everything as it was before the first slice.
     void clear();
-    /// Bytes that are kept of a block: what waits of it, and what changes left.
+    /// Bytes kept per block: waiting changes, and the result of changes.
     static constexpr std::size_t kBytesOfBlock = 5 * sizeof(std::uint64_t);
     std::size_t count() const { return std::size_t(layout_.blocks.x) * layout_.blocks.y; }
-    /// Returns where what is kept of a block lies in an array of count().
+    /// Returns a block's place in an array of count().
     std::size_t placeOf(glm::ivec2 block) const {
         return std::size_t(block.y) * layout_.blocks.x + block.x;
     }
 
   private:
-    // Of a block, changes that nobody has been told of.
+    // Changes of a block that were not passed on yet.
     struct Waiting {
         std::uint64_t voxels = 0;
         std::uint64_t visible = 0;
         std::uint64_t lowVoxels = 0;
-        const ClassIndex* classes = nullptr;  // that they have become
+        const ClassIndex* classes = nullptr;  // after the changes
     };
 
-    // Words that may be passed over at a time, where all are covered.
+    // Words tested for cover at once.
     static constexpr std::size_t kLookedAt = 16;
-    // Words that are on their way from memory at a time.
+    // Words prefetched at once.
     static constexpr std::size_t kFetched = 8;
 
     template <typename Use>
@@ -147,7 +140,7 @@ class SliceBlocks {
     glm::ivec2 blockOf(const DeltaWord& word) const {
         return glm::ivec2(word.block.y, word.block.x) - firstBlock_;
     }
-    // Rows are found by wordsOf().
+    // wordsOf() finds the rows.
     bool hasColumn(glm::ivec2 block) const { return block.x >= 0 && block.x < layout_.blocks.x; }
     SeenWord seenOf(const DeltaWord& word) const {
         if (input_.lit) return litOf(word);
@@ -175,18 +168,18 @@ class SliceBlocks {
     bool stampEmptyVoxels_;
     DigitPlace digit_;
     const ClassTable::Color* colors_;  // of classes
-    bool takesDigit_;                  // not all that is visible has it
-    // [word]: of classes, that have the digit; null: all that are visible
+    bool takesDigit_;                  // some visible voxels lack the digit
+    // [word]: voxels of classes with the digit; null: all visible ones
     const std::uint64_t* voxels_ = nullptr;
-    // Null where no low digit goes with this one; likewise.
+    // Null where no low digit goes along.
     const ClassTable::Color* lowColors_ = nullptr;
     const std::uint64_t* lowVoxels_ = nullptr;
-    std::vector<std::uint64_t> shown_;  // [block]: those that changes left so
+    std::vector<std::uint64_t> shown_;  // [block]: visible after the changes
     std::vector<Waiting> waiting_;      // [block]
-    glm::ivec2 rowsBefore_{0};          // of blocks, that were needed in the slice before
+    glm::ivec2 rowsBefore_{0};          // rows of blocks needed in the previous slice
 };
 
-// Changes come in order, and are left out only where nothing will be needed later either.
+// Changes come in order, and are skipped only where no later slice needs the block either.
 template <typename Use>
 void SliceBlocks::forWords(int slice, bool whole, const NeededPixels& needed, const Use& use) {
     const glm::ivec2 now = blocksReaching(layout_, needed.firstRow, needed.lastRow);
@@ -202,12 +195,12 @@ void SliceBlocks::forWords(int slice, bool whole, const NeededPixels& needed, co
         const std::uint64_t voxels = whole ? seen.visible : seen.changed;
         if (voxels != 0) use(blockOf(word), voxels, seen);
     };
-    // Words that come next: what they point to is on its way meanwhile.
+    // Next words, whose classes are being prefetched.
     std::array<const DeltaWord*, kFetched> next;
     std::size_t count = 0;
     std::size_t looked = 0;
     int row = -1;
-    std::optional<SheetCover::Row> hiding;  // of the row in hand
+    std::optional<SheetCover::Row> hiding;  // of the current row
     bool fetches = false;
     for (std::size_t i = 0; i < words.size(); ++i) {
         const DeltaWord& word = words[i];
@@ -234,7 +227,7 @@ void SliceBlocks::forWords(int slice, bool whole, const NeededPixels& needed, co
         useWord(*next[i % next.size()]);
 }
 
-// All blocks of rows, with the voxels that lie in the volume's box.
+// All blocks of rows, with their voxels in the volume's box.
 template <typename Use>
 void SliceBlocks::forEachBlock(std::span<const DeltaWord> words, glm::ivec2 rows,
                                const SheetCover* cover, const Use& use) const {
@@ -283,29 +276,26 @@ void SliceBlocks::forChanges(int slice, const NeededPixels& needed, const Use& u
     rowsBefore_ = rows;
 }
 
-/// Makes sheets of footprints of a single pixel, where a voxel is seen in no other: writes the
-/// colours of voxels, both digits at once, to the pixels that they have.
+/// Makes sheets of one-pixel footprints: writes colours, both digits at once, to own pixels.
 class PixelSplatter {
   public:
     static bool fits(const Footprint& footprint) { return footprint.width == 1; }
 
-    /// Bytes that one takes, of a footprint that fits, without its sheet.
+    /// Bytes for a footprint that fits, without the sheet.
     static double bytes(const SplatInput& input, const SheetLayout& layout);
 
     /// @param input    with a footprint that fits
-    /// @param largest  of the layouts to come
+    /// @param largest  of all layouts to come
     /// @param sheet    of that layout; zero whenever a slab begins
-    /// @param digit    of colours
-    /// @param withLow  whether the low digit is added to this, the high one: there must be one
+    /// @param withLow  whether the low digit, which must exist, is added to this high one
     PixelSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
                   DigitPlace digit, bool withLow);
 
-    /// Takes on a layout, which the sheet must have by then.
+    /// The sheet must have the layout already.
     void setLayout(const SheetLayout& layout) { blocks_.setLayout(layout); }
-    /// Makes the sheet that of the slice, after the one before it if it is not whole.
-    /// @param needed  what will be read; the rest is made when it is
+    /// Turns the sheet into the slice's, from that of the previous slice unless it is whole.
+    /// @param needed  pixels that will be read; others are made once needed
     void splat(int slice, bool whole, const NeededPixels& needed);
-    /// Makes everything as it was before the first slice.
     void clear();
 
   private:
@@ -315,7 +305,7 @@ class PixelSplatter {
     void splatChanges(int slice, const NeededPixels& needed);
     template <typename Use>
     void withValues(const SeenWord& word, const Use& use);
-    // Of a block.
+    // Values of a block.
     template <typename Value>
     void writeVoxels(std::int32_t* tile, std::uint64_t voxels, const ClassIndex* classes,
                      const Value* values) const;
@@ -326,14 +316,14 @@ class PixelSplatter {
 
     SliceBlocks blocks_;
     Sheet& sheet_;
-    std::int32_t one_;  // what a footprint adds up to
-    // Of classes, one of both, as the sheet has channels.
+    std::int32_t one_;  // sum of a footprint
+    // [class]: pixels_ for four channels, opacities_ for one.
     std::vector<Pixel> pixels_;
     std::vector<std::int32_t> opacities_;
-    std::array<Pixel, 64> own_;  // of a word whose voxels have colours of their own
-    std::vector<int> slices_;    // [block]: that was last written, of slabs that are whole
-    std::vector<glm::ivec2> shownBlocks_;  // in such a slab, of the slice in hand
-    std::vector<glm::ivec2> before_;       // of the slice before it
+    std::array<Pixel, 64> own_;            // of a word with own colours
+    std::vector<int> slices_;              // [block]: last slice written, in whole slabs
+    std::vector<glm::ivec2> shownBlocks_;  // in the current slice of a whole slab
+    std::vector<glm::ivec2> before_;       // in the previous slice
 };
 
 }  // namespace deltasplat

@@ -81,7 +81,7 @@ double Splatter::bytes(const SplatInput& input, const SheetLayout& layout) {
 
 // Based on: "Accelerating Footprint Method Based on Comparability of Consecutive Image Slices",
 // equation 9, and Lee Westover, "Footprint Evaluation for Volume Rendering", 1990, for the sheet.
-// All ways give the same integers.
+// All splatters give the same integers.
 void DigitSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
     whole_ = slab.whole;
     if (PixelSplatter::fits(input_.footprint)) {
@@ -89,8 +89,7 @@ void DigitSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
         if (!pixels_) pixels_.emplace(input_, largest_, sheet_, digit_, hasLow_);
         return pixels_->setLayout(layout);
     }
-    // What is splatted anew for each slice has to be cleared as well, and a low digit be added,
-    // both of which tiles do by the way: that is more than small stamps are worth.
+    // Small stamps do not pay if slices need clearing or low digits, which tiles do in passing.
     const bool suitsStamps = TileSplatter::isWide(input_.footprint) || (!slab.whole && !hasLow_);
     stamping_ = !TileSplatter::fits(input_.footprint) || (suitsStamps && isFew(slab));
     sheet_.setLayout(layout);
@@ -107,7 +106,7 @@ void DigitSplatter::begin(const PlannedSlab& slab, const SheetLayout& layout) {
 }
 
 bool DigitSplatter::isFew(const PlannedSlab& slab) const {
-    // Then empty ones are stamped as well.
+    // Empty voxels are stamped as well.
     if (input_.stampEmptyVoxels && digit_.plane == 0 && !digit_.low) return false;
     return isFew_.value_or(false) ||
            slab.stamps() < TileSplatter::leastStamps(input_.footprint) * slab.stampedWords();
@@ -138,7 +137,7 @@ double DigitSplatter::bytes(const SplatInput& input, const SheetLayout& layout, 
     if (PixelSplatter::fits(input.footprint))
         return double(layout.bytes()) + PixelSplatter::bytes(input, layout);
     const double blocks = double(layout.blocks.x) * layout.blocks.y;
-    // What stamps show, which of them wait, and their list as it grows.
+    // Classes or colours shown by stamps, waiting changes, and the growing list of stamps.
     const double shownBytes = input.colors.own() ? sizeof(ClassTable::Color) : sizeof(ClassIndex);
     const double ofBlock = 64 * shownBytes + 3 * sizeof(BlockStamps) + SliceBlocks::kBytesOfBlock;
     const bool withLow = hasLow && TileSplatter::addsLow(input.footprint);

@@ -11,13 +11,12 @@
 
 namespace deltasplat {
 
-/// Turns slabs into sheets of one digit of colours, in the way that suits the footprint and how
-/// much changes. Holds what that takes, to be used for one slab after the other; not thread-safe.
+/// Turns slabs, one after the other, into sheets of one digit of colours, in the way that suits the
+/// footprint and the amount of change. Not thread-safe.
 class DigitSplatter {
   public:
-    /// @param largest  of the layouts to come
-    /// @param hasLow   whether the low digit is added to this, the high one: along with it
-    ///                 (addsLow), or as a sheet where it is summed
+    /// @param largest  of all layouts to come
+    /// @param hasLow   whether the low digit is added to this high one (addsLow), or as a sheet
     DigitSplatter(const SplatInput& input, const SheetLayout& largest, DigitPlace digit,
                   bool hasLow)
         : input_(input),
@@ -29,29 +28,26 @@ class DigitSplatter {
         if (voxels && voxels->of(digit) && !PixelSplatter::fits(input.footprint))
             isFew_ = voxels->fewerThan(TileSplatter::leastStamps(input.footprint), digit);
     }
-    // All ways refer to the sheet.
+    // All splatters refer to the sheet.
     DigitSplatter(const DigitSplatter&) = delete;
     DigitSplatter& operator=(const DigitSplatter&) = delete;
 
-    /// Whether the low digit goes along with the high one, and has no sheet of its own.
+    /// Whether the low digit goes along with the high one, without a sheet of its own.
     static bool addsLow(const Footprint& footprint) {
         return PixelSplatter::fits(footprint) || TileSplatter::addsLow(footprint);
     }
 
-    /// Begins with a slab.
-    /// @param layout  of the whole sheet, or of a part of it (layoutPart)
+    /// Begins a slab.
+    /// @param layout  of the whole sheet, or of a part (layoutPart)
     void begin(const PlannedSlab& slab, const SheetLayout& layout);
-    /// Makes the sheet of the slab's next slice, and returns it. Deltas are added to what the slice
-    /// before left; of a whole slab, each slice starts anew.
-    /// @param needed  others may hold an earlier slice, or part of this one
-    /// @param low     the sheet of the low digit, or null
+    /// Returns the next slice's sheet, with deltas added to the last; whole slabs start anew.
+    /// @param needed  other pixels may hold earlier slices, or parts of this one
+    /// @param low     sheet of the low digit, or null
     const Sheet& splat(int slice, const NeededPixels& needed, const Sheet* low = nullptr);
-    /// Whether the slab in hand is stamped: then the low digit is not added.
+    /// Whether the current slab is stamped, which adds no low digit.
     bool isStamping() const { return stamping_; }
-    /// Ends a slab.
     void end();
 
-    /// Bytes that it takes.
     static double bytes(const SplatInput& input, const SheetLayout& layout, bool hasLow);
 
   private:
@@ -61,24 +57,23 @@ class DigitSplatter {
     SheetLayout largest_;
     DigitPlace digit_;
     bool hasLow_;
-    std::optional<bool> isFew_;  // of several digits: whether few voxels of a block have this one
+    std::optional<bool> isFew_;  // with several digits: whether few voxels per block have this one
     Sheet sheet_;
-    std::optional<PixelSplatter> pixels_;  // each made when it is first needed
+    std::optional<PixelSplatter> pixels_;  // each made when first needed
     std::optional<StampSplatter> stamps_;
     std::optional<TileSplatter> tiles_;
-    bool stamping_ = false;  // of the slab in hand
+    bool stamping_ = false;  // in the current slab
     bool whole_ = false;     // likewise
 };
 
-/// Turns slabs into sheets of one plane of colours: of the high digit, and of the low one, where
-/// there is one, rounded to the same units. To be used for one slab after the other; not
-/// thread-safe.
+/// Turns slabs, one after the other, into sheets of one plane of colours: the high digit, plus the
+/// low one if any, rounded to the same units. Not thread-safe.
 class PlaneSplatter {
   public:
-    /// @param largest  of the layouts to come
+    /// @param largest  of all layouts to come
     PlaneSplatter(const SplatInput& input, const SheetLayout& largest, int plane);
 
-    /// As those of DigitSplatter.
+    /// As in DigitSplatter.
     void begin(const PlannedSlab& slab, const SheetLayout& layout);
     const Sheet& splat(int slice, const NeededPixels& needed);
     void end();
@@ -86,7 +81,7 @@ class PlaneSplatter {
     static double bytes(const SplatInput& input, const SheetLayout& layout, int plane);
 
   private:
-    // Of the slab in hand: tiles add the low digit themselves.
+    // Tiles add the low digit themselves.
     bool sumsDigits() const { return low_ && high_.isStamping(); }
 
     const SplatInput& input_;
@@ -96,21 +91,18 @@ class PlaneSplatter {
     std::optional<Sheet> sum_;  // of both, made when stamps first make the high one
 };
 
-/// Turns slabs into sheets of all planes of colours.
 class Splatter {
   public:
-    /// @param largest  of the layouts to come
+    /// @param largest  of all layouts to come
     Splatter(const SplatInput& input, const SheetLayout& largest);
 
-    /// As those of DigitSplatter; there is a sheet for each plane, valid until the next call.
+    /// As in DigitSplatter, with a sheet per plane, valid until the next call.
     void begin(const PlannedSlab& slab, const SheetLayout& layout);
     std::span<const Sheet* const> splat(int slice, const NeededPixels& needed);
     void end();
 
-    /// Bytes that a splatter takes.
     static double bytes(const SplatInput& input, const SheetLayout& layout);
 
-    // Planes refer to the input.
     Splatter(const Splatter&) = delete;
     Splatter& operator=(const Splatter&) = delete;
 

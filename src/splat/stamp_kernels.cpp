@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inner loops of splatting stamp by stamp, compiled once for each SIMD level. All of it is
-// integer arithmetic, so that every level gives the same bits.
+// The inner loops of splatting stamp by stamp, compiled once per SIMD level. Integer arithmetic
+// gives the same bits at every level.
 #include "splat/stamp_kernels.h"
 
 #include <bit>
@@ -19,12 +19,11 @@ HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Wider vectors are slower here: consecutive stamps overlap, and what was just stored can only be
-// forwarded to a load of the same place and width.
+// Wider is slower: stamps overlap, and stores forward only to loads of their place and width.
 constexpr std::size_t kMaxLanes = 8;
 using IntTag = hn::CappedTag<std::int32_t, kMaxLanes>;
 
-// A class's colour as stamps multiply it: for every pixel of a vector, in 16-bit integers.
+// A class's colour as 16-bit factors for every pixel of a vector.
 template <int kChannels>
 HWY_INLINE auto loadColor(const ClassTable::Color& color) {
     const hn::Rebind<std::int16_t, IntTag> tag;
@@ -38,8 +37,7 @@ HWY_INLINE auto loadColor(const ClassTable::Color& color) {
     }
 }
 
-// Sixteen-bit integers, each followed by a zero, so that multiplying pairs multiplies them: half
-// the work of multiplying 32-bit integers on x86.
+// 16-bit integers, each before a zero: pairwise products cost half of 32-bit ones on x86.
 template <class V>
 HWY_INLINE hn::Vec<IntTag> asPairs(V values) {
     const hn::Rebind<std::uint16_t, IntTag> narrow;
@@ -47,8 +45,7 @@ HWY_INLINE hn::Vec<IntTag> asPairs(V values) {
     return hn::BitCast(IntTag(), hn::PromoteTo(wide, hn::BitCast(narrow, values)));
 }
 
-// Rows of a footprint as vectors: in registers where the width is known at compile time and small,
-// for a stamp is bound by its loads and stores.
+// Rows of a footprint: in registers for small fixed widths, as loads and stores bound stamps.
 template <int kChannels, int kWidth>
 class Rows {
     static constexpr int kLanes = int(hn::MaxLanes(IntTag()));
@@ -64,7 +61,7 @@ class Rows {
         }
     }
 
-    // Adds color * weight to the pixels from `row` on; `color` as pairs.
+    // Adds color * weight, `color` as pairs, to the pixels from `row` on.
     HWY_INLINE void stamp(hn::Vec<IntTag> color, std::int32_t* HWY_RESTRICT row,
                           std::size_t pitch) const {
         const IntTag tag;
@@ -81,7 +78,7 @@ class Rows {
     hn::Vec<IntTag> held_[kWidth][kVectors];
 };
 
-// Of any width.
+// Rows of any width.
 template <int kChannels>
 class Rows<kChannels, 0> {
   public:
@@ -107,8 +104,8 @@ class Rows<kChannels, 0> {
     int rows_;
 };
 
-// Goes through the active voxels of blocks, along u first: that is down the rows of the sheet,
-// where consecutive stamps meet the very vectors that were just stored.
+// Iterates over the active voxels of blocks, first along u: down the rows of the sheet, where
+// consecutive stamps meet just stored vectors.
 template <class Stamps>
 class ActiveVoxels {
   public:
@@ -120,8 +117,7 @@ class ActiveVoxels {
         const int n = std::countr_zero(rest_);
         return 8 * (n & 7) + (n >> 3);
     }
-    // Behind the last voxel comes the last block's first one again, so that loading ahead reads
-    // something that is there.
+    // The last block's first voxel follows its last one again, so that loading ahead stays valid.
     void next() {
         rest_ &= rest_ - 1;
         if (rest_ != 0) return;
@@ -135,7 +131,7 @@ class ActiveVoxels {
     std::uint64_t rest_;  // of the block's voxels
 };
 
-// The colours of a block's voxel, and what it showed before.
+// The colours of a block's voxel now and before.
 class ClassColors {
   public:
     explicit ClassColors(const ClassTable::Color* colors) : colors_(colors) {}
@@ -175,7 +171,7 @@ void stampBlocksOf(std::span<const Stamps> blocks, const Colors& colors,
     ActiveVoxels<Stamps> voxels(blocks);
     hn::Vec<IntTag> color;
     std::int32_t* row;
-    // Colour and place are loaded one stamp ahead, or the stamp would wait for them.
+    // Colour and place are loaded one stamp ahead, so that no stamp waits for them.
     const auto load = [&]() HWY_ATTR {
         const Stamps& block = voxels.block();
         const int n = voxels.voxel();

@@ -9,9 +9,8 @@
 
 namespace deltasplat {
 
-/// Calls use(i) for the tiles whose bytes are not zero, of which there are few in most rows of
-/// tiles.
-/// @param tiles  a byte for each tile, and zeros up to a multiple of eight
+/// Calls use(i) for the tiles with bytes other than zero, which are rare in most rows of tiles.
+/// @param tiles  a byte per tile, and zeros up to a multiple of eight
 template <typename Use>
 inline void forTiles(std::span<const std::uint8_t> tiles, const Use& use) {
     for (std::size_t first = 0; first < tiles.size(); first += 8) {
@@ -24,7 +23,7 @@ inline void forTiles(std::span<const std::uint8_t> tiles, const Use& use) {
     }
 }
 
-/// Returns rows of a tile, of which there is one, and those between them.
+/// Returns rows of a tile, at least one, and the rows between them.
 inline unsigned withRowsBetween(unsigned rows) {
     return 0xFFu << std::countr_zero(rows) & ((1u << std::bit_width(rows)) - 1);
 }

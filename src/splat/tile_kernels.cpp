@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Splats 8x8 voxels at a time, compiled once for each SIMD level. Integer arithmetic throughout, so
-// that every level gives the same bits.
+// Splats 8x8 voxels at a time, compiled once per SIMD level. Integer arithmetic gives the same bits
+// at every level.
 #include "splat/tile_kernels.h"
 
 #include <bit>
@@ -29,14 +29,14 @@ class TileSums {
     using Tag = hn::CappedTag < std::int32_t, kRow<16 ? kRow : 16>;
     using V = hn::Vec<Tag>;
     static constexpr int kLanes = int(hn::MaxLanes(Tag()));
-    // Of pixels, that a pair of rows of voxels has.
+    // Rows of pixels per pair of rows of voxels.
     static constexpr int kPairRows = 2 * kResolution;
 
   public:
     explicit TileSums(const TileWeights& weights)
         : TileSums(weights, std::make_integer_sequence<int, kPhases>()) {}
 
-    // Makes rows of a tile and returns which of them are not all zero.
+    // Makes rows of a tile and returns which are not all zero.
     template <bool kIsAll>
     HWY_INLINE unsigned makeRows(const PairedRow& tile, std::int32_t* HWY_RESTRICT sheet,
                                  std::size_t sheetPitch, unsigned rows) const {
@@ -46,8 +46,8 @@ class TileSums {
     }
 
     // Adds low digits to rows of a tile that hold high ones.
-    // @param full  bits are set of rows that are not all zero now
-    // @return of these rows, those in which any low digit is other than zero
+    // @param full  bits are set for rows that are not all zero now
+    // @return the rows with any low digit other than zero
     template <bool kIsAll>
     HWY_INLINE unsigned addLowRows(const PairedRow& tile, std::int32_t* HWY_RESTRICT sheet,
                                    std::size_t sheetPitch, unsigned rows, unsigned& full) const {
@@ -58,36 +58,35 @@ class TileSums {
     }
 
   private:
-    // Vectors are made from values: a constructor that the compiler writes is not of a SIMD level.
+    // A compiler-made constructor would have no SIMD level, so vectors are made from values.
     template <int... kPhase>
     TileSums(const TileWeights& weights, std::integer_sequence<int, kPhase...>)
         : weights_{weightsOf(weights, kPhase)...} {}
 
-    // What a vector of pixels takes from a pair of rows: its voxels, and those beside them.
+    // Voxels of a vector of pixels in a pair of rows, and their neighbours.
     struct Columns {
         V before, here, behind;
     };
-    // A vector may be shorter than the pixels of a voxel: then weights differ from one to the next.
+    // In a vector shorter than a voxel's pixels, weights differ from one vector to the next.
     static constexpr int kStep = kResolution * kChannels;
     static constexpr int kPhases = kStep > kLanes ? kStep / kLanes : 1;
-    // Those that are not zero, of rows 0 to 3 of a pair. Each by its name, so that they stay in
-    // registers.
+    // Weights other than zero for rows 0 to 3 of a pair, named to stay in registers.
     struct Weights {
         Columns before0, here0, here1, here2, here3, behind1, behind2, behind3;
     };
-    // Of short vectors there are more than registers: these are read where they are used.
+    // Short vectors outnumber the registers: read where used.
     using KeptWeights = std::conditional_t<(kLanes > 4), const Weights, const Weights&>;
 
     static HWY_INLINE bool isAny(V lanes) {
         return !hn::AllTrue(Tag(), hn::Eq(lanes, hn::Zero(Tag())));
     }
 
-    // Rows that are not all zero, and those with low digits.
+    // Rows that are not all zero, and rows with low digits.
     struct Made {
         unsigned full, low;
     };
 
-    // Writes what a row has from number `to` on, or adds it as the low digit.
+    // Writes numbers of a row from `to` on, or adds them as the low digit.
     template <bool kIsLow>
     static HWY_INLINE void finish(V sum, std::int32_t* HWY_RESTRICT to, int y, Made& made) {
         const Tag tag;
@@ -167,7 +166,7 @@ class TileSums {
         return {at(-1), at(0), at(1)};
     }
 
-    // Repeats each voxel for the pixels that it has in a row.
+    // Repeats each voxel for its pixels in a row.
     static HWY_INLINE V doubled(V voxels) {
         if constexpr (kLanes <= kChannels) return voxels;
         const Tag tag;
@@ -244,8 +243,7 @@ void findFullRowsKernel(const TileRow& row, int channels, std::span<const std::u
         unsigned found = 0;
         for (unsigned rest = touched[i]; rest != 0; rest &= rest - 1) {
             const int y = std::countr_zero(rest);
-            // Whether a row is full is hard to foretell: looking at all of it is faster than
-            // stopping.
+            // Fullness is hard to predict: scanning a whole row is faster than stopping early.
             auto any = hn::Zero(tag);
             for (std::size_t x = 0; x < length; x += hn::Lanes(tag))
                 any = hn::Or(any, hn::LoadU(tag, tile + y * row.sheetPitch + x));
@@ -295,7 +293,7 @@ bool TileWeights::fits(const Footprint& footprint) {
 
 TileWeights::TileWeights(const Footprint& footprint, int sheetChannels)
     : resolution(footprint.resolution), channels(sheetChannels) {
-    // What a voxel gives to the pixel at (x, y) from it.
+    // Weight of a voxel for the pixel at (x, y) from it.
     const auto weightAt = [&](int x, int y) {
         const int column = x + footprint.reach();
         const int row = y + footprint.reach();
@@ -305,10 +303,10 @@ TileWeights::TileWeights(const Footprint& footprint, int sheetChannels)
     };
     for (std::size_t column = 0; column < 3; ++column) {
         for (std::size_t lane = 0; lane < 16; ++lane) {
-            // The pixel's place behind a voxel, and behind the voxel of this column.
+            // The pixel's place behind the voxel of its column.
             const int phase = int(lane) / channels % resolution;
             const int x = phase - resolution * (int(column) - 1);
-            // What a pixel takes from rows of voxels that lie so far before it.
+            // Weights of a pixel for rows of voxels y and yBehind before it.
             const auto pair = [&](int y, int yBehind) {
                 return std::int32_t(weightAt(x, yBehind) << 16 | weightAt(x, y));
             };

@@ -29,8 +29,8 @@ std::uint64_t TileSplatter::leastStamps(const Footprint& footprint) {
     return TileWeights::fits(footprint) ? 12 : 20;
 }
 
-// Tiles take one voxel more than lie in them, which the outermost, never touched, leaves room for.
-// Cells need not begin where tiles do, and take more.
+// Tiles read one voxel beyond their own, inside the outermost tile, which is never touched. Cells
+// need not begin where tiles do, and read more.
 TileSplatter::PlaneSize TileSplatter::planeSize(const Footprint& footprint,
                                                 const SheetLayout& layout) {
     const int margin =
@@ -64,7 +64,7 @@ TileSplatter::Plane TileSplatter::planeOf(const std::vector<ClassTable::Color>& 
 double TileSplatter::bytes(const Footprint& footprint, const SheetLayout& layout, bool withLow) {
     const PlaneSize plane = planeSize(footprint, layout);
     const double blocks = double(layout.blocks.x) * layout.blocks.y;
-    // What blocks show, which of them do, twice, and what waits.
+    // Slices of blocks, two lists of shown blocks, and waiting changes.
     const double ofBlock = sizeof(Shown) + 4 * sizeof(glm::ivec2) + SliceBlocks::kBytesOfBlock;
     const double ofPlane = double(sizeof(std::int16_t)) * double(plane.pitch) * double(plane.rows);
     return (withLow ? 2 : 1) * ofPlane + ofBlock * blocks;
@@ -122,7 +122,7 @@ PairedRow TileSplatter::pairedRow(Plane& plane, int row) const {
     return {planeRow(plane, row).first, 2 * size_.pitch};
 }
 
-// The voxels of a row of tiles that begins with one, as margins do.
+// The voxels of a row of tiles; like margins, it begins with a voxel.
 PlaneRow TileSplatter::planeRow(Plane& plane, int row) const {
     const SheetLayout& layout = sheet_.layout();
     const int voxel = kTilePixels * row / layout.resolution;
@@ -147,7 +147,7 @@ void TileSplatter::paintChanges(int slice, const NeededPixels& needed) {
                        });
 }
 
-// Only what the slice before showed and this one does not paint over has to be taken away.
+// Only voxels of the previous slice that are not painted over are removed.
 void TileSplatter::paintWhole(int slice, const NeededPixels& needed) {
     before_.swap(shownBlocks_);
     shownBlocks_.clear();
@@ -170,7 +170,6 @@ void TileSplatter::takeAway(glm::ivec2 block) {
     shown.voxels = 0;
 }
 
-// Writes the colours of voxels of a block.
 void TileSplatter::paint(glm::ivec2 block, std::uint64_t voxels, const SeenWord& word) {
     sheet_.touch(block, voxels);
     paintPlane(high_, block, voxels, word.classes, word.colors);
@@ -197,7 +196,7 @@ void TileSplatter::paintPlane(Plane& plane, glm::ivec2 block, std::uint64_t voxe
 
 void TileSplatter::paintColors(std::int16_t* plane, std::uint64_t voxels, const ClassIndex* classes,
                                const ClassTable::Color* colors) const {
-    // Where most voxels change, it is faster to write all.
+    // For most voxels, writing all is faster.
     constexpr int kFew = 24;
     if (std::popcount(voxels) >= kFew) {
         for (int u = 0; u < 8; ++u, plane += size_.pitch) {

@@ -15,52 +15,45 @@
 
 namespace deltasplat {
 
-/// Makes sheets of footprints that reach few voxels: writes what changes to a plane of colours, and
-/// sums up the tiles of the sheet that it reaches.
+/// Makes sheets of footprints that reach few voxels: writes changes to a plane of colours, and sums
+/// up the tiles of the sheet that changes reach.
 class TileSplatter {
   public:
-    /// Whether a footprint is small enough: as one of the weights says.
     static bool fits(const Footprint& footprint) {
         return TileWeights::fits(footprint) || CellWeights::fits(footprint);
     }
 
-    /// Whether a footprint is wider than those of the smallest weights: such as CellWeights are
-    /// for, and those that do not fit.
+    /// Whether a footprint needs CellWeights, or more.
     static bool isWide(const Footprint& footprint) { return !TileWeights::fits(footprint); }
 
-    /// Whether low digits are summed along with high ones.
     static bool addsLow(const Footprint& footprint) { return TileWeights::fits(footprint); }
 
-    /// Returns how many voxels of a block a slice has to stamp for this to be faster than stamping
-    /// them.
+    /// Returns the stamps per slice of a block from which this is faster than stamping.
     static std::uint64_t leastStamps(const Footprint& footprint);
 
-    /// Bytes that one takes, of a footprint that fits, without its sheet.
+    /// Bytes for a footprint that fits, without the sheet.
     static double bytes(const Footprint& footprint, const SheetLayout& layout, bool withLow);
 
     /// @param input    with a footprint that fits
-    /// @param largest  of the layouts to come
+    /// @param largest  of all layouts to come
     /// @param sheet    of that layout; zero whenever a slab begins
-    /// @param digit    of colours
-    /// @param withLow  whether the low digit is added to this, the high one: there must be one, and
-    ///                 the smallest footprints, as addsLow() says
+    /// @param withLow  whether the low digit (required) is added to this high one (addsLow())
     TileSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
                  DigitPlace digit, bool withLow);
 
-    /// Takes on a layout, which the sheet must have by then.
+    /// The sheet must have the layout already.
     void setLayout(const SheetLayout& layout) { blocks_.setLayout(layout); }
-    /// Makes the sheet that of the slice, after the one before it if it is not whole.
-    /// @param needed  what will be read; the rest is made when it is
-    /// @param low     if not null, the sheet of the low digit, which is added
+    /// Turns the sheet into the slice's, from that of the previous slice unless it is whole.
+    /// @param needed  pixels that will be read; others are made once needed
+    /// @param low     sheet of the low digit to add, or null
     void splat(int slice, bool whole, const NeededPixels& needed, const Sheet* low);
-    /// Makes everything as it was before the first slice.
     void clear();
 
   private:
-    // What is shown of a block.
+    // What a block shows.
     struct Shown {
         std::uint64_t voxels = 0;     // that may not be empty
-        int slice = 0;                // that last painted it, in a slab that is whole
+        int slice = 0;                // that last painted it, in a whole slab
         std::uint64_t lowVoxels = 0;  // that have a low digit
     };
 
@@ -70,16 +63,14 @@ class TileSplatter {
         std::size_t rows;
     };
 
-    // A digit of the colours shown.
     struct Plane {
         std::pmr::vector<std::int16_t> numbers;  // a margin around them
         std::vector<std::int16_t> opacities;     // of one colour: [classes]
     };
 
-    // What the low digit takes besides.
     struct Low {
         Plane plane;
-        std::vector<std::uint8_t> rows;  // [tile]: that may have it, as Sheet::mark() has them
+        std::vector<std::uint8_t> rows;  // [tile]: rows that may have it, as in Sheet::mark()
     };
 
     static PlaneSize planeSize(const Footprint& footprint, const SheetLayout& layout);
@@ -93,7 +84,7 @@ class TileSplatter {
                 std::span<std::uint8_t> full);
     PlaneRow planeRow(Plane& plane, int row) const;
     PairedRow pairedRow(Plane& plane, int row) const;
-    // Whether planes hold two rows together, as the smallest weights take them.
+    // Whether planes interleave two rows, for TileWeights.
     bool isPaired() const { return std::holds_alternative<TileWeights>(weights_); }
     void paint(glm::ivec2 block, std::uint64_t voxels, const SeenWord& word);
     void paintPlane(Plane& plane, glm::ivec2 block, std::uint64_t voxels, const ClassIndex* classes,
@@ -107,28 +98,27 @@ class TileSplatter {
     std::variant<TileWeights, CellWeights> weights_;
     PlaneSize size_;  // of planes
     Plane high_;
-    std::optional<Low> low_;               // if summed along
-    std::vector<std::uint8_t> lowRows_;    // [tile]: of another sheet, of the row of tiles in hand
-    std::pmr::vector<Shown> shown_;        // [block]
-    std::vector<glm::ivec2> shownBlocks_;  // those with voxels
-    std::vector<glm::ivec2> before_;       // likewise, in the slice before
+    std::optional<Low> low_;  // if summed along
+    std::vector<std::uint8_t>
+        lowRows_;                    // [tile]: rows of another sheet, in the current row of tiles
+    std::pmr::vector<Shown> shown_;  // [block]
+    std::vector<glm::ivec2> shownBlocks_;  // blocks with voxels
+    std::vector<glm::ivec2> before_;       // likewise, in the previous slice
 };
 
 /// Makes sheets by stamping footprints of any size, one by one.
 class StampSplatter {
   public:
-    /// @param largest  of the layouts to come
+    /// @param largest  of all layouts to come
     /// @param sheet    of that layout; zero whenever a slab begins
-    /// @param digit    of colours
     StampSplatter(const SplatInput& input, const SheetLayout& largest, Sheet& sheet,
                   DigitPlace digit = {});
 
-    /// Takes on a layout, which the sheet must have by then.
+    /// The sheet must have the layout already.
     void setLayout(const SheetLayout& layout);
-    /// Makes the sheet that of the slice, after the one before it if it is not whole.
-    /// @param needed  what will be read; the rest is made when it is
+    /// Turns the sheet into the slice's, from that of the previous slice unless it is whole.
+    /// @param needed  pixels that will be read; others are made once needed
     void splat(int slice, bool whole, const NeededPixels& needed);
-    /// Makes everything as it was before the first slice.
     void clear();
 
   private:
@@ -140,10 +130,9 @@ class StampSplatter {
     Sheet& sheet_;
     StampWeights weights_;
     std::size_t mostBlocks_;  // of any layout
-    /// Of a voxel's footprint, from its block's first one.
+    /// Offset of a voxel's footprint from its block's first one.
     std::array<std::uint32_t, 64> placeInBlock_;
-    // Of the slice in hand, and [block][64], of slabs that are not whole; of own colours the second
-    // ones.
+    // Of the slice, and [block][64] in slabs that are not whole; the second pair: own colours.
     std::vector<BlockStamps> stamped_;
     std::pmr::vector<ClassIndex> shown_;
     std::vector<ColorStamps> stampedColors_;

@@ -12,13 +12,12 @@ namespace deltasplat {
 
 namespace {
 
-// Calls use(voxel) for the voxels of a mask.
 template <typename Use>
 void forVoxels(std::uint64_t mask, const Use& use) {
     for (; mask != 0; mask &= mask - 1) use(std::size_t(std::countr_zero(mask)));
 }
 
-// Clears colours but for those of a mask.
+// Clears colours outside a mask.
 void keepOnly(std::uint64_t mask, std::array<ClassTable::Color, 64>& colors) {
     if (mask == 0) {
         colors = {};
@@ -27,7 +26,7 @@ void keepOnly(std::uint64_t mask, std::array<ClassTable::Color, 64>& colors) {
     forVoxels(~mask, [&](std::size_t n) { colors[n] = {}; });
 }
 
-// Whether something is so thin, or so dark, that one plane cannot tell it.
+// Whether something is too thin or too dark for one plane.
 bool needsTwoPlanes(const ClassTable& classes, const LookLight& light) {
     if (light.isFine()) return true;
     constexpr double kLeast = 8 * kLeastOfPlane;
@@ -72,7 +71,7 @@ void WordColors::light(std::size_t word, int slice,
     out[0]->any = one.visible;
     out[0]->anyLow = low;
     if (table_.planes.size() == 1) return;
-    // What is finer than the first plane's digits is written anew.
+    // Colours finer than the first plane's digits are written anew.
     *out[1] = {};
     constexpr ClassTable::Color kNothing{};
     forVoxels(more.planes & one.visible, [&](std::size_t n) {

@@ -13,27 +13,23 @@
 
 namespace deltasplat {
 
-/// What the voxels of a word are seen as, of one plane of colours: premultiplied by the opacity
-/// that their class has in a step.
+/// Colours of a word's voxels on one plane, premultiplied by the opacity of their class in a step.
 struct LitWord {
-    std::array<ClassTable::Color, 64> high;  ///< of those that are not visible 0
+    std::array<ClassTable::Color, 64> high;  ///< 0 for invisible voxels
     std::array<ClassTable::Color, 64> low;   ///< likewise
     std::uint64_t any;                       ///< mask word of voxels with anything on the plane
-    std::uint64_t anyLow;                    ///< with a low digit
+    std::uint64_t anyLow;                    ///< of voxels with a low digit
 };
 
-/// What the voxels of words are seen as that have looks of their own: in two digits, on as many
-/// planes as the thinnest and darkest of their classes need. Thread-safe.
+/// Own looks' colours, on as many planes as the thinnest and darkest need. Thread-safe.
 class WordColors {
   public:
-    /// @param deltas   must outlive the colours
     /// @param classes  of the words
     WordColors(const PackedDeltas& deltas, const ClassTable& classes,
                std::unique_ptr<const LookLight> light);
 
-    /// Which planes and digits there are, and in which units; of classes there is the empty one.
+    /// Planes, digits and units; the only class is the empty one.
     const ClassTable& table() const { return table_; }
-    /// Lights a word.
     /// @param out  [planes]
     void light(std::size_t word, int slice,
                const std::array<LitWord*, ClassTable::kMaxPlanes>& out) const;
@@ -44,21 +40,20 @@ class WordColors {
     ClassTable table_;
 };
 
-/// What the voxels of words are seen as in steps of one length, in digits.
+/// Colours of voxels in steps of one length, in digits.
 class StepColors {
   public:
     /// @param deltas  must outlive the colours
-    /// @param light   what own looks are seen as; null: they look as their classes do
+    /// @param light   colours of own looks; null: colours of classes
     StepColors(const PackedDeltas& deltas, ClassTable classes,
                std::unique_ptr<const LookLight> light);
-    /// Of classes alone: of looks that are seen from nowhere yet.
+    /// For classes only: looks without a camera.
     explicit StepColors(ClassTable classes) : classes_(std::move(classes)) {}
 
     const ClassTable& classes() const { return classes_; }
-    /// Which planes and digits there are, in which units, and of which colour, if of one; with own
-    /// colours there are no others' to look up in it.
+    /// Planes, digits, units, and the colour, if there is one; own colours are not in it.
     const ClassTable& table() const { return own_ ? own_->table() : classes_; }
-    /// Colours that voxels have of their own; null if they look as their classes do.
+    /// Colours of voxels' own looks; null: classes' colours.
     const WordColors* own() const { return own_ ? &*own_ : nullptr; }
 
   private:

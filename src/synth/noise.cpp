@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: G. Box, M. Muller, "A Note on the Generation of Random Normal Deviates", 1958.
-// Based on: K. Perlin, "Improving Noise", 2002 (fade curve and twelve gradients); F. K. Musgrave in
-// "Texturing and Modeling: A Procedural Approach", 2003, chapter 16 (octaves added up). Deviates in
-// that a hash of lattice coordinates and seed replaces the table, so that the noise never repeats.
+// Based on: K. Perlin, "Improving Noise", 2002 (fade curve, twelve gradients); F. K. Musgrave in
+// "Texturing and Modeling: A Procedural Approach", 2003, chapter 16 (sum of octaves). Deviation: a
+// hash of lattice coordinates and seed replaces the table, so the noise never repeats.
 #include "synth/noise.h"
 
 #include <algorithm>
@@ -18,7 +18,6 @@ namespace deltasplat {
 
 namespace {
 
-// A normally distributed number that depends on nothing but the seed and the position.
 double gaussianAt(std::uint64_t seed, const glm::dvec3& p) {
     const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // -0 is 0
     const std::uint64_t hash = hash3(seed, bits(p.x), bits(p.y), bits(p.z));
@@ -37,7 +36,7 @@ ValueAt withNoise(ValueAt valueAt, std::uint64_t seed, double noise) {
 
 namespace {
 
-constexpr double kNextStrength = 0.45;  // of an octave, as a share of the one before
+constexpr double kNextStrength = 0.45;  // of each octave, relative to the previous one
 
 double fade(double t) {
     return t * t * t * (t * (t * 6 - 15) + 10);
@@ -47,7 +46,7 @@ double lerp(double t, double a, double b) {
     return a + t * (b - a);
 }
 
-// The scalar product of one of twelve gradients (1,1,0), (-1,1,0), ... with an offset.
+// Returns the dot product of an offset with one of twelve gradients (1,1,0), (-1,1,0), ...
 double gradientAt(std::uint64_t seed, const glm::ivec3& cell, const glm::dvec3& offset) {
     const auto part = [](int i) { return std::uint64_t(std::int64_t(i)); };
     const std::uint64_t hash = hash3(seed, part(cell.x), part(cell.y), part(cell.z)) >> 32;

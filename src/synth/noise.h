@@ -11,14 +11,13 @@
 
 namespace deltasplat {
 
-/// Scrambles 64 bits, one to one.
+/// Scrambles 64 bits by a bijection.
 constexpr std::uint64_t mixBits(std::uint64_t bits) {
     bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
     bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
     return bits ^ (bits >> 31);
 }
 
-/// Returns a hash of three numbers and a seed.
 constexpr std::uint64_t hash3(std::uint64_t seed, std::uint64_t x, std::uint64_t y,
                               std::uint64_t z) {
     constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
@@ -27,12 +26,12 @@ constexpr std::uint64_t hash3(std::uint64_t seed, std::uint64_t x, std::uint64_t
     return hash;
 }
 
-/// Returns a number from 0 (inclusive) to 1 (exclusive) made from the upper bits of `hash`.
+/// Returns a number in [0, 1) from the upper bits of `hash`.
 constexpr double unitFromBits(std::uint64_t hash) {
     return double(hash >> 11) * 0x1p-53;
 }
 
-/// Numbers from 0 (inclusive) to 1 (exclusive), one after the other, that follow from a seed.
+/// A sequence of numbers in [0, 1) determined by a seed.
 class UnitSequence {
   public:
     explicit UnitSequence(std::uint64_t seed) : hash_(mixBits(seed)) {}
@@ -46,22 +45,22 @@ class UnitSequence {
     std::uint64_t hash_;
 };
 
-/// Adds normally distributed noise to a volume, and clamps to 0..1.
+/// Adds normally distributed noise to a volume and clamps to 0..1.
 /// @param noise  standard deviation; 0 changes nothing
 ValueAt withNoise(ValueAt valueAt, std::uint64_t seed, double noise);
 
 /// Returns gradient noise: 0 at whole numbers, -1..1 (a little more at most) between.
 double noiseAt(std::uint64_t seed, const glm::dvec3& p);
 
-/// Returns octaves of noise added up, each half the size and a little less than half the strength
-/// of the one before: about -1..1, 0 on average.
+/// Returns a sum of noise octaves, each half the size and slightly less than half the strength of
+/// the one before: about -1..1, 0 on average.
 double fractalAt(std::uint64_t seed, glm::dvec3 p, int octaves);
 
-/// Returns a vector of three such sums, one for each axis: by so much turbulence carries a place.
+/// Returns three such sums, the displacement of a point by turbulence.
 glm::dvec3 turbulenceAt(std::uint64_t seed, const glm::dvec3& p, int octaves);
 
-/// Returns octaves folded at 0, so that a surface moved by them bulges between creases as a cumulus
-/// does: 0 in the deepest crease, 1 (clamped) on the highest bulge.
+/// Returns octaves folded at 0. A surface moved by them bulges between creases like a cumulus: 0 in
+/// the deepest crease, 1 (clamped) on the highest bulge.
 double billowAt(std::uint64_t seed, glm::dvec3 p);
 
 }  // namespace deltasplat

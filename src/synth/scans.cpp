@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: a design of this project; no measure of it is anybody's.
-// Based on: a design of this project, in the manner of the volume library's CT engine.
-// Based on: L. Shepp, B. Logan, "The Fourier Reconstruction of a Head Section", 1974 (ellipses);
-// P. Toft, "The Radon Transform", 1996, table B.3 (contrasts that can be seen); the third axes and
-// positions along z are those of M. Schabel's 3D version, 2005. The ventricles are turned about z
-// only.
-// Based on: C. Murray, "The Physiological Principle of Minimum Work", 1926 (where a vessel forks,
-// the cubes of the radii add up). The rest is a design of this project.
+// Body: designed for this project; no measures of a real person. Engine: likewise, in the manner of
+// the volume library's CT engine.
+// Based on: L. Shepp, B. Logan, "The Fourier Reconstruction of a Head Section", 1974 (ellipses); P.
+// Toft, "The Radon Transform", 1996, table B.3 (visible contrasts); M. Schabel's 3D version, 2005
+// (third axes, positions along z). The ventricles are rotated about z only.
+// Based on: C. Murray, "The Physiological Principle of Minimum Work", 1926 (at a fork the cubes of
+// the radii add up); otherwise designed for this project.
 
 #include <algorithm>
 #include <cmath>
@@ -53,12 +52,12 @@ bool inCapsule(const glm::dvec3& p, const glm::dvec3& begin, const glm::dvec3& e
     return glm::dot(rest, rest) <= radius * radius;
 }
 
-// The other side of what is there twice.
+// Mirrors paired parts onto one side.
 glm::dvec3 onLeft(const glm::dvec3& p) {
     return {std::abs(p.x), p.y, p.z};
 }
 
-// Half the breadth of the trunk, at each height.
+// Half the trunk's width at a height.
 double breadthAt(double y) {
     const double chest = 0.46 - 0.5 * (y - 0.12) * (y - 0.12);
     const double hip = 0.42 - 0.6 * (y + 0.75) * (y + 0.75);
@@ -82,7 +81,7 @@ bool isSkin(const glm::dvec3& p) {
            inEllipsoid(p, {0, 0.75, 0.2}, {0.025, 0.045, 0.04});
 }
 
-// Twelve pairs that fall towards the front, where they end beside the breast bone.
+// Twelve pairs that slope down towards the front and end beside the breast bone.
 bool isRib(const glm::dvec3& p) {
     for (int rib = 0; rib < 12; ++rib) {
         const double side = rib < 9 ? 1 : 1 - 0.22 * (rib - 8);
@@ -128,7 +127,7 @@ bool isBone(const glm::dvec3& p) {
 
 bool isBowel(const glm::dvec3& p) {
     if (!inEllipsoid(p, {0, -0.42, 0.07}, {0.24, 0.19, 0.12})) return false;
-    // Loops side by side.
+    // Adjacent loops.
     const double loops = portable::sin(34 * p.x + 3 * portable::sin(21 * p.y)) +
                          portable::sin(38 * p.y + 2 * portable::sin(17 * p.z));
     return loops > -0.5;
@@ -171,12 +170,12 @@ bool inBox(const glm::dvec3& p, double halfX, double lowY, double highY, double 
     return std::abs(p.x) <= halfX && within(p.y, lowY, highY) && std::abs(p.z) <= halfZ;
 }
 
-// Distance from an axis along x, y or z is a distance in the other two coordinates.
+// Distance from an axis along x, y or z, given the other two coordinates.
 double distance(double a, double b) {
     return std::sqrt(a * a + b * b);
 }
 
-// What one cylinder holds, with x counted from its axis; `pistonY` is the piston's lower edge.
+// Value inside one cylinder, x relative to its axis; `pistonY` is the piston's lower edge.
 double cylinderValue(const glm::dvec3& p, double pistonY) {
     const double radius = distance(p.x, p.z);
     const bool piston = radius <= kBore - 0.025 && within(p.y, pistonY, pistonY + 0.24);
@@ -196,7 +195,7 @@ bool isSteel(const glm::dvec3& p) {
     return crankShaft || flywheel || bolts;
 }
 
-// The casting around the cylinders, ports and water jacket taken out; `radius` is the distance from
+// The casting around the cylinders, without ports and water jacket; `radius` is the distance from
 // the nearer cylinder's axis.
 bool isCasting(const glm::dvec3& p, double radius) {
     const bool block = inBox(p, 0.72, -0.32, 0.5, 0.42) || inBox(p, 0.84, 0.5, 0.62, 0.46);
@@ -233,8 +232,8 @@ ValueAt makeEngine(std::uint64_t seed, double noise) {
 namespace {
 
 struct Ellipsoid {
-    int tenths;           // added where the point is inside, in tenths of the value range
-    glm::dvec3 halfAxes;  // before turning
+    int tenths;           // added inside, in tenths of the value range
+    glm::dvec3 halfAxes;  // before rotation
     glm::dvec3 centre;
     double turnDegrees;  // about z, counter-clockwise
 };
@@ -263,7 +262,7 @@ bool isInside(const Ellipsoid& ellipsoid, const glm::dvec3& p) {
 
 ValueAt makeSheppLogan() {
     return [](const glm::dvec3& p) {
-        // Whole tenths add up without rounding, so that empty places are exactly 0.
+        // Sums of integers are exact, so empty places are exactly 0.
         int tenths = 0;
         for (const Ellipsoid& ellipsoid : kHead) {
             if (isInside(ellipsoid, p)) tenths += ellipsoid.tenths;
@@ -274,7 +273,6 @@ ValueAt makeSheppLogan() {
 
 namespace {
 
-// A round piece of a vessel, as thick at one end as at the other.
 struct Tube {
     glm::dvec3 begin, end;
     double radius;
@@ -296,10 +294,10 @@ class TreeGrower {
     }
 
   private:
-    // Grows a vessel and, `forks` times over, the two that it forks into.
+    // Grows a vessel and its branches, up to `forks` generations.
     void add(const glm::dvec3& begin, const glm::dvec3& direction, double length, double radius,
              int forks) {
-        // What would leave the cube turns back at its wall.
+        // A vessel that would leave the cube ends at its wall.
         const double reach = 0.97 - radius;
         const glm::dvec3 end = glm::clamp(begin + direction * length, -reach, reach);
         tubes_.push_back({begin, end, radius});
@@ -326,7 +324,6 @@ class TreeGrower {
     std::vector<Tube> tubes_;
 };
 
-// Tells which tubes are near a point.
 class TubeMap {
   public:
     explicit TubeMap(std::vector<Tube> tubes)

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A design of this project: balls all around a ball, of which noise makes lumps (see
-// gradient_noise.cpp); it is hot where they meet.
-// A design of this project: tongues of flame and puffs of smoke, carried about by noise (see
-// gradient_noise.cpp). Their places come from a seed, as do those of what carries them.
+// Designs of this project with noise.cpp; a seed determines all places. Explosion: lumpy balls
+// around a ball, hot where they meet. Fire: tongues of flame and puffs of smoke, displaced by
+// noise.
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +22,7 @@ ValueAt makeCloud(std::uint64_t seed) {
     return [seed](const glm::dvec3& p) {
         // Bulges grow out of a flattened ball; density rises with the depth below their surface.
         constexpr glm::dvec3 kHalfAxes(0.92, 0.7, 0.85);
-        constexpr double kCore = 0.42;      // share of the radius that the deepest crease leaves
+        constexpr double kCore = 0.42;      // share of the radius left at the deepest crease
         constexpr double kFrequency = 2.2;  // lattice cells per unit, largest octave
         constexpr double kSkin = 0.55;      // depth of full density, as a share of the radius
         const glm::dvec3 q = p / kHalfAxes;
@@ -36,7 +35,7 @@ ValueAt makeCloud(std::uint64_t seed) {
 
 namespace {
 
-constexpr double kReach = 0.98;  // distance from the middle at which there is nothing any more
+constexpr double kReach = 0.98;  // distance from the centre beyond which all is empty
 
 class Explosion {
   public:
@@ -61,14 +60,14 @@ class Explosion {
         if (glm::length(p) >= kReach) return 0;
         constexpr double kSkin = 0.05;  // depth of full density
         const Place place = placeOf(p);
-        // What is hot in a crack should be seen.
+        // Less smoke in cracks shows the heat inside.
         const double depth = place.depth - 0.02 * place.crack;
         return std::clamp(depth / kSkin, 0.0, 1.0);
     }
 
     double temperatureAt(const glm::dvec3& p) const {
         constexpr double kAir = 300, kHottest = 2200;  // kelvin
-        constexpr double kHot = 0.78;                  // distance from the middle where that begins
+        constexpr double kHot = 0.78;                  // distance from the centre where heat begins
         const double radius = glm::length(p);
         if (radius >= kHot) return kAir;
         const Place place = placeOf(p);
@@ -78,7 +77,7 @@ class Explosion {
         return kAir + (kHottest - kAir) * share;
     }
 
-    // Bulges are ash, creases are scorched.
+    // Bulges are ash-coloured, creases scorched.
     glm::dvec3 colorAt(const glm::dvec3& p) const {
         constexpr glm::dvec3 kScorched(0.085, 0.045, 0.024), kAsh(0.36, 0.335, 0.31);
         const Place place = placeOf(p);
@@ -96,7 +95,7 @@ class Explosion {
 
     struct Place {
         double depth;  // below the surface, in units of the cube
-        double crack;  // how much of a crack it is, 0..1
+        double crack;  // share of a crack, 0..1
         double bulge;  // as billowAt
     };
 
@@ -123,7 +122,7 @@ class Explosion {
 }  // namespace
 
 AnalyticVolume makeExplosion(std::uint64_t seed) {
-    constexpr double kWarm = 500;  // kelvin; what is no warmer does not glow
+    constexpr double kWarm = 500;  // kelvin; colder gas does not glow
     const auto ball = std::make_shared<const Explosion>(seed);
     AnalyticVolume volume{"explosion", [ball](const glm::dvec3& p) { return ball->smokeAt(p); }};
     volume.others.push_back(
@@ -135,16 +134,16 @@ AnalyticVolume makeExplosion(std::uint64_t seed) {
 namespace {
 
 constexpr double kGround = -0.93;  // y where the fire stands; heights are above it
-constexpr double kCold = -1.2;     // excess where nothing is felt of the flame
+constexpr double kCold = -1.2;     // excess far from the flame
 
-// What one seed decides, each with a seed of its own.
+// Aspects that have separate seeds.
 enum Part : std::uint64_t { kTongues, kDrift, kLicks, kPuffs, kSwirl, kBulges };
 
 std::uint64_t seedOf(std::uint64_t seed, Part part) {
     return hash3(seed, part, 0, 0);
 }
 
-// Returns the angle of the next of many places that are spread evenly around the axis, or nearly.
+// Returns the angle of one of many points spread nearly evenly around the axis.
 double angleOf(int index, double random) {
     constexpr double kGoldenAngle = 2.399963229728653;  // pi (3 - sqrt(5))
     return kGoldenAngle * index + 0.8 * random;
@@ -163,8 +162,7 @@ class Flame {
         addDetached(random);
     }
 
-    // Returns how far inside of the flame a place is: 0 at its surface, 1 deep in it, kCold and no
-    // less away from it.
+    // Returns the depth inside the flame: 0 at its surface, 1 deep inside, down to kCold outside.
     double excessAt(const glm::dvec3& p) const {
         const double height = p.y - kGround;
         const double reach = 0.7 - 0.2 * std::clamp(height, 0.0, 1.0);
@@ -172,12 +170,12 @@ class Flame {
             std::min({height + 0.06, 1.7 - height, reach - distanceToAxis(p, 0, 0)});
         if (room <= 0) return kCold;
 
-        // What rises is carried about the more the higher it is.
+        // Turbulence grows with height.
         const double carry = 0.04 + 0.13 * std::clamp(height, 0.0, 1.2);
         const glm::dvec3 drift = turbulenceAt(drift_, p * glm::dvec3(2.6, 1.9, 2.6), 3);
         const glm::dvec3 q = p + carry * drift * glm::dvec3(1, 0.6, 1);
         const double from = q.y - kGround;
-        // Licks are longer than wide, and eat up more of a tip than of a root.
+        // Licks are longer than wide, and erode tips more than roots.
         const double licks = fractalAt(licks_, q * glm::dvec3(7, 3, 7), 4);
         double excess = tonguesAt(q) + licks * (0.2 + 0.95 * std::clamp(from / 1.1, 0.0, 1.0));
         excess = std::min(excess - 0.7 * (1 - smoothStep(0, 0.2, from)), from / 0.06);
@@ -185,7 +183,7 @@ class Flame {
     }
 
   private:
-    // A drop that tapers upwards, from `base` on.
+    // A drop shape from `base` on that tapers upwards.
     struct Tongue {
         double x, z, base, height, width;
     };
@@ -219,9 +217,9 @@ class Flame {
     }
 
     double tonguesAt(const glm::dvec3& p) const {
-        constexpr double kDepth = 0.13;  // below the surface where the excess is 1
+        constexpr double kDepth = 0.13;  // depth below the surface where the excess is 1
         const double height = p.y - kGround;
-        // Air that is drawn in leads all to the axis.
+        // Inflowing air bends all tongues towards the axis.
         const double inwards = 1 - 0.45 * std::clamp(height / 0.8, 0.0, 1.0);
         double excess = -4;
         for (const Tongue& tongue : tongues_) {
@@ -232,7 +230,7 @@ class Flame {
         return excess;
     }
 
-    // Less than 0 below a tongue and above it, the farther the less.
+    // Negative below and above a tongue, decreasing with distance.
     static double radiusAt(const Tongue& tongue, double height) {
         const double above = height - tongue.base;
         const double u = above / tongue.height;
@@ -263,7 +261,7 @@ class Smoke {
         }
     }
 
-    // Returns how much of the smoke is as warm as in the middle, 0..1: threads of it.
+    // Returns the share of smoke, in threads, that is as warm as at the centre, 0..1.
     double coreAt(const glm::dvec3& p) const {
         const double share = bodyAt(p) * (1 - smoothStep(0, 0.5, distanceToAxis(p, leanAt(p), 0)));
         if (share == 0) return 0;
@@ -271,7 +269,7 @@ class Smoke {
         return share * std::clamp(0.8 + 0.8 * threads, 0.0, 1.0);
     }
 
-    // Returns how much of what is there is smoke, 0..1, not counting what burns it.
+    // Returns the amount of smoke, 0..1, before flames consume it.
     double bodyAt(const glm::dvec3& p) const {
         const double height = p.y - kGround;
         const double reach = 0.15 + 0.4 * height - distanceToAxis(p, leanAt(p), 0);
@@ -286,7 +284,7 @@ class Smoke {
             const double inside = puff.radius - glm::distance(q, puff.centre);
             depth = smoothMax(depth, inside / skin, 0.25);
         }
-        if (depth <= -0.5) return 0;  // no bulge reaches there
+        if (depth <= -0.5) return 0;  // beyond any bulge
         depth += 0.75 * billowAt(bulges_, 4.2 * q) - 0.25;
         return std::clamp(std::min(depth / 0.45, 8 * room), 0.0, 1.0);
     }
@@ -311,7 +309,7 @@ struct Fire {
         return std::clamp(flame.excessAt(p) / 0.7, 0.0, 1.0);
     }
 
-    // Smoke is made where flame ends, and thins as it rises.
+    // Smoke forms where flames end, and thins as it rises.
     double smokeAt(const glm::dvec3& p) const {
         const double body = smoke.bodyAt(p);
         if (body == 0) return 0;
@@ -321,8 +319,8 @@ struct Fire {
         return body * made * left * (1 - std::min(1.0, 2 * flameAt(p)));
     }
 
-    // Flame begins at 0.45 of the way from the air's temperature to the hottest, less further up;
-    // around it, and in the smoke above, it is cooler than that.
+    // A flame's surface is 0.45 of the way from air temperature to the hottest, less further up.
+    // Around it and in the smoke above it is cooler.
     double temperatureAt(const glm::dvec3& p) const {
         const double height = p.y - kGround;
         const double excess = flame.excessAt(p);
@@ -345,7 +343,7 @@ struct Fire {
 }  // namespace
 
 AnalyticVolume makeFire(std::uint64_t seed) {
-    constexpr double kWarm = 500;  // kelvin; what is no warmer looks and moves like air
+    constexpr double kWarm = 500;  // kelvin; colder gas looks and moves like air
     const auto fire = std::make_shared<const Fire>(seed);
     AnalyticVolume volume{"fire", [fire](const glm::dvec3& p) { return fire->smokeAt(p); }};
     volume.others.push_back(

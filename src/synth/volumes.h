@@ -12,14 +12,14 @@
 
 namespace deltasplat {
 
-/// Returns 0 up to `low`, 1 from `high` on, and between a curve that is level at both ends.
+/// Returns 0 up to `low`, 1 from `high` on, and a curve with level ends in between.
 inline double smoothStep(double low, double high, double x) {
     const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
     return t * t * (3 - 2 * t);
 }
 
-/// Returns the larger number, or a little more (`width` / 4 at most) where they differ by less than
-/// `width`: surfaces that are where this is 0 flow together without a crease.
+/// Returns the larger number, raised by at most `width` / 4 where they differ by less than `width`:
+/// the zero surfaces merge without a crease.
 inline double smoothMax(double a, double b, double width) {
     const double near = std::max(width - std::abs(a - b), 0.0) / width;
     return std::max(a, b) + near * near * width / 4;
@@ -28,7 +28,7 @@ inline double smoothMax(double a, double b, double width) {
 /// A volume's value 0..1 at a position in [-1, 1]^3.
 using ValueAt = std::function<double(const glm::dvec3& position)>;
 
-// One function for each name of analyticNames().
+// One function per name in analyticNames().
 ValueAt makeMarschnerLobb();
 ValueAt makeHydrogen();
 ValueAt makeSheppLogan();
@@ -40,8 +40,8 @@ ValueAt makeBody();
 AnalyticVolume makeFire(std::uint64_t seed);
 AnalyticVolume makeExplosion(std::uint64_t seed);
 
-/// Returns the mean of a voxel's samples.
-/// @param valueAt  gives a number or a vector for a position
+/// Returns the mean of a voxel's sample points.
+/// @param valueAt  maps a position to a number or a vector
 template <typename ValueAt>
 auto sampleVoxel(const ValueAt& valueAt, const glm::ivec3& index,
                  const AnalyticFileOptions& options) {

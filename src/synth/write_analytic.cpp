@@ -34,8 +34,8 @@ namespace deltasplat {
 
 namespace {
 
-/// Samples a volume as writeAnalytic writes it to a `.vdb`.
-/// @throw Error(kFailed) for more than memory holds; whatever `listener.progress` throws
+/// Samples a volume into the grids that writeAnalytic writes to a `.vdb`.
+/// @throw Error(kFailed) if memory is short; exceptions of `listener.progress`
 std::vector<TreeGrid> sampleGrids(const AnalyticVolume& volume, const AnalyticFileOptions& options,
                                   const Listener& listener);
 
@@ -44,8 +44,7 @@ namespace {
 using Leaf = openvdb::FloatTree::LeafNodeType;
 using ColorLeaf = openvdb::Vec3STree::LeafNodeType;
 
-// Samples 8^3 voxels; null if nothing there is above the threshold. Voxels beyond the volume's dims
-// stay inactive.
+// Samples 8^3 voxels; null if none exceeds the threshold. Voxels beyond dims stay inactive.
 std::unique_ptr<Leaf> sampleLeaf(const AnalyticGrid& sampled, const openvdb::Coord& origin,
                                  const AnalyticFileOptions& options) {
     const glm::ivec3& dims = options.dims;
@@ -59,7 +58,7 @@ std::unique_ptr<Leaf> sampleLeaf(const AnalyticGrid& sampled, const openvdb::Coo
     return leaf->isEmpty() ? nullptr : std::move(leaf);
 }
 
-// A leaf that is one value throughout takes no more memory than a tile.
+// A constant leaf is stored as a tile.
 void addLeaf(openvdb::FloatTree& tree, std::unique_ptr<Leaf> leaf) {
     float value = 0;
     bool active = false;
@@ -71,7 +70,7 @@ void addLeaf(openvdb::FloatTree& tree, std::unique_ptr<Leaf> leaf) {
     }
 }
 
-// Makes tiles of what is uniform, as OpenVDB's prune does, which its library has.
+// Turns uniform nodes into tiles, like OpenVDB's prune, whose code is in its library.
 void pruneUniform(openvdb::FloatTree& tree) {
     openvdb::tree::NodeManager<openvdb::FloatTree, openvdb::FloatTree::DEPTH - 2> nodes(tree);
     nodes.foreachBottomUp(openvdb::tools::TolerancePruneOp<openvdb::FloatTree>(tree, 0.0f));
@@ -83,9 +82,9 @@ openvdb::FloatTree::Ptr sampleScalars(const AnalyticGrid& sampled,
     constexpr int kEdge = int(Leaf::DIM);
     const glm::ivec3 leaves = (options.dims - 1) / kEdge + 1;
     auto tree = std::make_shared<openvdb::FloatTree>(0.0f);
-    // One layer of leaves at a time keeps the work in large pieces and the list of them short.
+    // One layer of leaves at a time keeps tasks large and the list short.
     const std::size_t layerLeaves = std::size_t(leaves.y) * std::size_t(leaves.z);
-    // What a layer takes is known only when it is there, so room is asked for one full layer more.
+    // A layer's size is unknown beforehand, so memory for a full layer is requested.
     constexpr double kLeafBytes = leafBytes<Leaf>() + sizeof(void*);
     requireMemory("`dims`", kLeafBytes * double(layerLeaves));
     std::vector<std::unique_ptr<Leaf>> layer(layerLeaves);
@@ -110,7 +109,7 @@ void colorLeaf(const AnalyticVolume& volume, const AnalyticFileOptions& options,
     }
 }
 
-// Smoke that is one value throughout has colours of its own: its tiles become leaves.
+// Colours vary within uniform smoke, so its tiles become leaves.
 openvdb::Vec3STree::Ptr sampleColors(const AnalyticVolume& volume, const openvdb::FloatTree& shape,
                                      const AnalyticFileOptions& options, const Listener& listener) {
     constexpr std::size_t kBatch = 4096;  // leaves
@@ -153,7 +152,7 @@ std::vector<TreeGrid> sampleGrids(const AnalyticVolume& volume, const AnalyticFi
         };
         return own;
     };
-    // Whatever is not 0 is density: there are volumes with values below it.
+    // Any non-zero value is density; some volumes have negative ones.
     constexpr double kNone = std::numeric_limits<double>::lowest();
     const auto density = sampleScalars({"density", volume.valueAt, kNone}, options, part());
     addFog(density, "density");
@@ -165,7 +164,7 @@ std::vector<TreeGrid> sampleGrids(const AnalyticVolume& volume, const AnalyticFi
 
 constexpr int kMostSamples = 16;
 
-// Stores a value 0..1 as one little-endian sample.
+// Stores a value 0..1 as a little-endian sample.
 void storeFloat(double value, std::byte* at) {
     storeLittle(float(value), at);
 }
@@ -229,7 +228,7 @@ void writeGrids(const AnalyticVolume& volume, const std::filesystem::path& file,
     if (!options.type.empty() && options.type != "float32") {
         throw Error(ErrorCode::kUsage, "`type`", "\"" + options.type + "\"", "float32 for .vdb");
     }
-    { const AtomicFile probe(file); }  // a bad name should fail before the work, not after
+    { const AtomicFile probe(file); }  // reports a bad name before the work
     std::vector<WrittenGrid> grids;
     for (const auto& grid : sampleGrids(volume, options, listener))
         grids.push_back(writtenGrid(grid));
@@ -289,13 +288,12 @@ ValueAt makeMarschnerLobb() {
 
 ValueAt makeHydrogen() {
     return [](const glm::dvec3& p) {
-        // |psi|^2 ~ (r^2 exp(-r/3) (3 cos^2 theta - 1))^2 with r in Bohr radii and theta from
-        // the y axis, which is up.
+        // |psi|^2 ~ (r^2 exp(-r/3) (3 cos^2 theta - 1))^2, r in Bohr radii, theta from the y axis.
         constexpr double kHalfEdge = 20;
         const glm::dvec3 q = p * kHalfEdge;
         const double radius = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
         const double psi = (2 * q.y * q.y - q.x * q.x - q.z * q.z) * portable::exp(-radius / 3);
-        // On the y axis psi is 2 y^2 exp(-y/3), which is largest at y = 6.
+        // On the y axis psi is 2 y^2 exp(-y/3), with its maximum at y = 6.
         const double largest = 72 * portable::exp(-2.0);
         return (psi / largest) * (psi / largest);
     };

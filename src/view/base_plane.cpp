@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: Philippe Lacroute and Marc Levoy, "Fast Volume Rendering Using a Shear-Warp
-// Factorization of the Viewing Transformation", 1994, of which perspective is the case of slices
-// that are scaled as well as shifted. Deviates in that the base plane is one of slopes, so that a
-// slice's scale is its distance from the eye.
+// Factorization of the Viewing Transformation", 1994; perspective scales slices as well as shifting
+// them. Deviates in that the base plane is one of slopes, so a slice's scale is its distance from
+// the eye.
 #include "view/base_plane.h"
 
 #include <algorithm>
@@ -22,7 +22,6 @@ namespace deltasplat {
 
 namespace {
 
-// Sheets run along v.
 glm::dvec2 swapped(glm::dvec2 v) {
     return {v.y, v.x};
 }
@@ -32,7 +31,7 @@ glm::dvec2 swapped(glm::dvec2 v) {
 int planeBorder(const Factorization& view, double spacing) {
     constexpr double kLeast = 8;
     constexpr double kMost = 512;
-    // Half as far again where pixels show more slopes than on average.
+    // Half as much again, because some pixels show more slopes than the average.
     constexpr double kReach = 3.2;
     return int(std::clamp(std::ceil(kReach / (spacing * view.pixelsPerSlope)), kLeast, kMost));
 }
@@ -64,25 +63,25 @@ BasePlane::BasePlane(const Factorization& view, const Camera& camera, int firstS
       stepWorld_(view.sliceStepWorld * view.steps),
       nearWorld_(camera.nearWorld) {
     const glm::dvec2 wide = (swapped(view.slopeMax) - origin_) / spacing;
-    // Whoever needs memory for it finds out that there are too many.
+    // Allocating memory for too many pixels fails later.
     constexpr double kMost = 1 << 30;
     limits_.max = glm::ivec2(glm::min(glm::ceil(wide), kMost)) + planeBorder(view, spacing) + 1;
     if (camera.projection == Projection::kPerspective) depthAlong_ = camera.direction;
-    // Depth grows evenly with slopes, and lengths are largest and smallest at ends.
+    // Depth is linear in slopes, so extremes are at corners.
     nearest_ = {std::numeric_limits<double>::infinity(), 0};
     for (int corner = 0; corner < 4; ++corner) {
         const double nearest = nearestOf({corner & 1 ? view.slopeMax.y : view.slopeMin.y,
                                           corner & 2 ? view.slopeMax.x : view.slopeMin.x});
         nearest_ = {std::min(nearest_.x, nearest), std::max(nearest_.y, nearest)};
     }
-    // Along each line of sight, that straight ahead is the longest way in slices.
+    // Depth along each line of sight: the line straight ahead crosses the most slices.
     if (!depthAlong_) nearest_.y = nearWorld_ / view.sliceStepWorld;
 }
 
 SlicePlace BasePlane::placeOf(int slice) const {
     const double slices = double(slice) - double(firstSlice_);
     if (!eye_) return {1, -(shiftPerSlice_ * slices)};
-    // Of what the eye cuts, the middle of what is left stands for it.
+    // A slice that the eye cuts is placed at the middle of the rest.
     const double from = std::max(distanceOf(slice) - 0.5, nearest_.x);
     const double distance = 0.5 * (from + distanceOf(slice) + 0.5);
     return {distance, {eye_->y, eye_->z}};
@@ -94,7 +93,7 @@ double BasePlane::distanceOf(int slice) const {
 }
 
 glm::ivec2 BasePlane::seen(glm::ivec2 slices) const {
-    // Of slices that end half a slice behind their middle, those that end beyond what is nearest.
+    // A slice is visible if it ends, half a slice behind its middle, beyond the nearest depth.
     const double least = nearest_.x - 0.5;
     if (!(least < std::numeric_limits<double>::infinity())) return {slices.x, slices.x - 1};
     if (frontToBack_) {
@@ -147,15 +146,15 @@ StepLengths::StepLengths(const BasePlane& plane, const PlaneBox& planeBox,
 
 namespace {
 
-// What rounding may have done to a sum of a few shifts.
+// Rounding error of a sum of a few shifts.
 constexpr double kSame = 1e-12;
 
 double partOf(double x) {
     return x - std::floor(x);
 }
 
-// Returns where the shortest interval begins, around the circle of what places leave of whole
-// numbers, that has all of them: behind the widest gap. Of equal ones, 0 if it can be.
+// Returns the start of the shortest interval of the unit circle that contains all fractional parts:
+// the end of the widest gap. Prefers 0 among equals.
 double beginOfShortest(double shift, int count) {
     std::vector<double> places;
     for (int i = 0; i < count; ++i) places.push_back(partOf(i * shift));
@@ -190,8 +189,8 @@ JoinedSlants joinedSlants(const glm::dvec2& shiftPerSlice, int count, int within
             most = std::max(most, i * whole - slant);
         }
         range[axis] = most - least;
-        // Else what lies beside a joined voxel is seen through its reading alone, which takes the
-        // more of it the farther its slices are off: up to a tenth with four, a fifth with eight.
+        // Otherwise only reading shows what lies beside a joined voxel. Reading takes more of it
+        // the farther slices are off: up to a tenth with four, a fifth with eight.
         constexpr double kHardly = 0.2;
         const bool goesOn = count * shift >= within || (count - 1) * shift <= kHardly;
         joined.keepsDensity = joined.keepsDensity && goesOn;

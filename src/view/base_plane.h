@@ -18,7 +18,6 @@
 
 namespace deltasplat {
 
-/// Pixels [min, max) of the base plane.
 struct PlaneBox {
     glm::ivec2 min{0};
     glm::ivec2 max{0};
@@ -29,67 +28,62 @@ struct PlaneBox {
     bool operator==(const PlaneBox&) const = default;
 };
 
-/// Where a slice lies on the base plane: base position b shows voxel position scale * b + offset,
-/// counted from the plane's first voxel.
+/// A slice on the base plane: position b shows voxel scale * b + offset, from the first voxel.
 struct SlicePlace {
     double scale = 1;
     glm::dvec2 offset{0.0};
 };
 
-/// From an eye, pixels around what the picture shows of a region, for the warp's filters to read,
-/// which reach two pixels of the picture.
-/// @param view     as BasePlane has it
-/// @param spacing  from one pixel to the next, in slopes
+/// Returns how many pixels surround a region seen from an eye. The warp reaches two picture pixels.
+/// @param view     as for BasePlane
+/// @param spacing  distance of pixels, in slopes
 int planeBorder(const Factorization& view, double spacing);
 
-/// Where base plane pixels lie: what slices have in common. Runs along v, as sheets do.
-///
-/// Numbers stay small however far from the index origin a volume is: voxels and slices are counted
-/// from the first ones, `firstVoxel` and `firstSlice`.
+/// Places of the base plane's pixels, for all slices. Runs along v, as sheets do. Counts voxels and
+/// slices from `firstVoxel` and `firstSlice`, so that numbers stay small far from the origin.
 class BasePlane {
   public:
-    /// Of parallel lines of sight: pixels as fine as those of sheets.
+    /// For parallel lines of sight: pixels as fine as those of sheets.
     /// @param firstVoxel    (v, u)
-    /// @param resolution    pixels a voxel
+    /// @param resolution    pixels per voxel
     /// @param offsetPixels  how far pixels lie behind voxels
     BasePlane(const Factorization& view, int firstSlice, glm::ivec2 firstVoxel, double resolution,
               double offsetPixels);
-    /// Of lines of sight from an eye: pixels of what the picture shows and a few around it.
-    /// @param spacing    from one pixel to the next, in slopes
+    /// For lines of sight from an eye: the pixels that the picture shows and a few around them.
+    /// @param spacing    distance of pixels, in slopes
     /// @param nearWorld  as Camera::nearWorld
     BasePlane(const Factorization& view, const Camera& camera, int firstSlice,
               glm::ivec2 firstVoxel, double spacing);
 
     bool frontToBack() const { return frontToBack_; }
     bool isParallel() const { return !eye_; }
-    /// Base position of a pixel, and from one pixel to the next.
     double spacing() const { return spacing_; }
     glm::dvec2 positionOf(glm::dvec2 pixel) const { return origin_ + spacing_ * pixel; }
     glm::dvec2 pixelOf(glm::dvec2 position) const { return (position - origin_) / spacing_; }
     SlicePlace placeOf(int slice) const;
 
-    /// Parallel: picture position to base plane pixel.
+    /// For parallel lines of sight: base plane pixel from picture position.
     const glm::dmat3& pixelFromPicture() const { return pixelFromPicture_; }
 
-    /// From an eye: all pixels.
+    /// For an eye: all pixels.
     const PlaneBox& limits() const { return limits_; }
-    /// From an eye: narrows a range of slices to those of which something is seen; y < x if none.
+    /// For an eye: narrows a range to the visible slices; y < x if there are none.
     glm::ivec2 seen(glm::ivec2 slices) const;
-    /// How many slices away a slice is.
+    /// Distance from the eye to a slice, in slices.
     double distanceOf(int slice) const;
-    /// Whether the eye, or the near plane, cuts the slice, so that only a share of it is seen.
+    /// Whether the eye or the near plane cuts the slice, so that only a part is visible.
     bool isCut(int slice) const;
-    /// Whether that is so of any of a range of slices of which something is seen.
+    /// Whether any visible slice of a range is cut.
     bool cutsAny(glm::ivec2 slices) const;
-    /// Which share of the way through a slice lies beyond the eye and the near plane.
+    /// Share of the way through a slice that lies beyond the eye and the near plane.
     double shareOf(int slice, glm::ivec2 pixel) const;
-    /// World length of the way through a slice, as a multiple of what colours are classified for.
+    /// World length of the way through a slice, relative to that which colours are classified for.
     double stepsAt(glm::ivec2 pixel) const;
 
     bool operator==(const BasePlane&) const = default;
 
   private:
-    // Of a slope: slices from the eye to the near plane, infinite where that is never crossed.
+    // Distance from the eye to the near plane in slices, for a slope; infinite if never crossed.
     double nearestOf(glm::dvec2 slope) const;
     glm::dvec3 rayOf(glm::dvec2 slope) const { return worldFromStep_ * glm::dvec3(1, slope); }
 
@@ -100,17 +94,16 @@ class BasePlane {
     glm::dvec2 shiftPerSlice_{0.0};
     glm::dmat3 pixelFromPicture_{1.0};
 
-    std::optional<glm::dvec3> eye_;  // (slice, v, u), from the first slice and voxel
-    glm::dmat3 worldFromStep_{1.0};  // away, along v, along u
-    double stepWorld_ = 1;           // that colours are classified for
+    std::optional<glm::dvec3> eye_;  // (slice, v, u), relative to the first slice and voxel
+    glm::dmat3 worldFromStep_{1.0};  // columns: away, along v, along u
+    double stepWorld_ = 1;           // length that colours are classified for
     PlaneBox limits_;
     double nearWorld_ = 0;
-    std::optional<glm::dvec3> depthAlong_;  // unit vector; empty: along each line of sight
-    glm::dvec2 nearest_{0.0};               // least and most that nearestOf() gives
+    std::optional<glm::dvec3> depthAlong_;  // unit vector; empty: depth along each line of sight
+    glm::dvec2 nearest_{0.0};               // least and most of nearestOf()
 };
 
-/// How many steps each base plane pixel's line of sight takes through a slice (stepsAt), `[row]
-/// [width]`. Multi-threaded.
+/// Steps of each base plane pixel through a slice (stepsAt), `[row][width]`. Multi-threaded.
 struct StepLengths {
     PlaneBox box;
     std::pmr::vector<float> values;  ///< and kStepsSpare more
@@ -123,34 +116,32 @@ struct StepLengths {
     }
 };
 
-/// What becomes one.
+/// Numbers of slices and voxels that are joined to one.
 struct JoinedVoxels {
     int slices = 1;
     int within = 1;  ///< as Subdivision::joinedWithin
 };
 
-/// How slices are moved that become one, and by how much that moves them.
 struct JoinedSlants {
-    std::array<glm::ivec2, kMostJoined> slants{};  ///< as Subdivision has them
-    /// How far what is joined lies from where it is drawn, in voxels: at most.
+    std::array<glm::ivec2, kMostJoined> slants{};  ///< as in Subdivision
+    /// Largest distance between a joined voxel's place and where it is drawn, in voxels.
     double farthest = 0;
-    /// Whether what is thin, and seen nearly edge-on, stays as dense as it is: along u and along v,
-    /// lines of sight go on by what becomes one within these slices, or hardly at all.
+    /// Whether thin structures seen nearly edge-on keep their density: along u and along v, lines
+    /// of sight move on by a joined voxel within these slices, or hardly at all.
     bool keepsDensity = true;
 };
 
-/// Returns the slants by which slices stay nearest to their places.
+/// Returns the slants that keep slices nearest to their places.
 /// @param shiftPerSlice  -1 to 1 each
-/// @param count          a power of two, kMostJoined at most
+/// @param count          a power of two, at most kMostJoined
 /// @param within         as Subdivision::joinedWithin
 JoinedSlants joinedSlants(const glm::dvec2& shiftPerSlice, int count, int within = 1);
 
-/// Returns where joined voxels are drawn, counted from the first of them: in the middle between the
-/// outermost places of all.
+/// Returns where joined voxels are drawn, relative to the first: midway between the outermost.
 /// @param slants  as Subdivision::joinedSlants
 glm::dvec2 middleOfJoined(const glm::dvec2& shiftPerSlice, std::span<const glm::ivec2> slants);
 
-/// How deep a line of sight, which crosses all slices, lies at a position along the slice axis.
+/// Depth of a line of sight, which crosses all slices, at a position along the slice axis.
 struct DepthLine {
     double first = 0;  ///< at position 0
     double perSlice = 0;
@@ -158,23 +149,23 @@ struct DepthLine {
     double at(double slice) const { return first + perSlice * slice; }
 };
 
-/// How deep slices lie in a picture, pixel by pixel: along the camera's line of sight as OpenEXR's
-/// worldToCamera has it, of kLatlong along each pixel's, in world units.
+/// Depths of slices per picture pixel in world units, along the camera's line of sight as in
+/// OpenEXR's worldToCamera, or along each pixel's for kLatlong.
 class SliceDepths {
   public:
-    /// @param worldFromSlices  from (slice, u, v), counted from anywhere
+    /// @param worldFromSlices  from (slice, u, v), with any origin
     SliceDepths(const Camera& camera, const glm::dmat4& worldFromSlices);
 
-    /// Of the middle of a pixel.
+    /// For the middle of a pixel.
     DepthLine lineAt(int x, int y) const;
-    /// What is nearer is not seen.
+    /// Smaller depths are not visible.
     double nearest() const { return camera_.nearWorld; }
 
   private:
     Camera camera_;
-    glm::dvec3 origin_;  // in the world, position 0 along the axis
+    glm::dvec3 origin_;  // in the world, at position 0 along the axis
     glm::dvec3 slicesPerWorld_;
-    std::optional<PictureRays> rays_;  // from an eye
+    std::optional<PictureRays> rays_;  // for an eye
 };
 
 }  // namespace deltasplat

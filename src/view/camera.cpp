@@ -23,18 +23,17 @@ namespace deltasplat {
 
 namespace {
 
-/// What a camera's options may be, by themselves and beside each other.
-/// @throw Error(kUsage) with what was got and what is expected
+/// Checks options singly and in combination.
+/// @throw Error(kUsage)
 void checkCameraOptions(const CameraOptions& options);
 
-/// @throw Error(kUsage)
 [[noreturn]] void refuseCamera(const char* option, const std::string& got,
                                const std::string& expected);
 
 bool isFinite(const glm::dvec3& v);
 
-/// Scales to length 1, without overflow on the way.
-/// @throw Error(kUsage) for what has no direction
+/// Scales to length 1 without overflow.
+/// @throw Error(kUsage) if the vector has no direction
 glm::dvec3 unitVector(const char* option, const glm::dvec3& v);
 
 void refuseCamera(const char* option, const std::string& got, const std::string& expected) {
@@ -70,7 +69,7 @@ void checkSize(const CameraOptions& options) {
         refuseCamera("`sizePixels`", text, "twice as wide as high for `projection` latlong");
 }
 
-// What one projection has and another has not must not be asked for.
+// Refuses options that the projection does not have.
 void checkProjection(const CameraOptions& options) {
     const auto requireFor = [&](bool given, bool allowed, const char* option,
                                 const char* expected) {
@@ -136,7 +135,7 @@ void checkEye(const CameraOptions& options) {
     }
 }
 
-// What else says where a perspective camera is and how much it sees.
+// Returns an option that also places or sizes a perspective camera.
 const char* otherThanCArm(const CameraOptions& options) {
     if (options.fovDegrees) return "`fovDegrees`";
     if (options.focalMm) return "`focalMm`";
@@ -194,7 +193,7 @@ void checkFrame(const CameraOptions& options) {
     }
 }
 
-// A matrix says all of where the camera is.
+// A matrix excludes other options of placement.
 void checkMatrix(const CameraOptions& options) {
     if (!options.worldFromCamera) return;
     const char* other = options.direction               ? "`direction`"
@@ -229,7 +228,7 @@ void checkCameraOptions(const CameraOptions& options) {
     checkMatrix(options);
 }
 
-// Both vectors in the space of who looks at the front: x to the right, y up, z towards the eye.
+// Vectors in the space of a viewer of the front: x to the right, y up, z towards the eye.
 struct NamedView {
     const char* name;
     glm::dvec3 direction;
@@ -254,23 +253,23 @@ const NamedView& namedView(const std::string& name) {
     refuseCamera("`view`", name, "one of " + known + afterStop(suggestion(name, names)));
 }
 
-// How who looks at the front of the volume stands in the world.
+// Orientation in the world of a viewer of the volume's front.
 struct Viewer {
     glm::dmat3 worldFromViewer{1.0};
     bool facesPatient = false;
 
-    // Sums with 0 have no -0.
+    // Adding 0 removes -0.
     glm::dvec3 toWorld(const glm::dvec3& v) const { return worldFromViewer * v + 0.0; }
 };
 
 Viewer viewerOf(const std::string& space) {
-    // The patient's left, head and front are at the right, above and nearer.
+    // The patient's left is at the right, the head above, the front nearer.
     if (space == "RAS") return {glm::dmat3(-1, 0, 0, 0, 0, 1, 0, 1, 0), true};
     if (space == "LPS") return {glm::dmat3(1, 0, 0, 0, 0, 1, 0, -1, 0), true};
     return {};
 }
 
-// The left of a patient who is faced is at the right.
+// A facing patient's left is at the right.
 std::string viewFrom(const Viewer& viewer, const std::string& view) {
     if (!viewer.facesPatient) return view;
     if (view == "left") return "right";
@@ -290,8 +289,7 @@ glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double degrees) {
     return v * cosine + glm::cross(axis, v) * sine + axis * (glm::dot(axis, v) * (1 - cosine));
 }
 
-// The line of sight that somebody names or points at: of an eye, the way to what it looks at. One
-// that sees all sides need not look at anything.
+// The named line of sight, or that from an eye to the target. A panorama at its target needs none.
 std::optional<glm::dvec3> givenDirection(const CameraOptions& options, const glm::dvec3& target) {
     if (options.direction || !options.eyeWorld) return options.direction;
     const glm::dvec3 direction = target - *options.eyeWorld;
@@ -306,11 +304,10 @@ bool areParallel(const glm::dvec3& a, const glm::dvec3& b) {
     return glm::length(glm::cross(a, b)) < 1e-9;
 }
 
-// Returns the shortest turn that takes one unit vector to another, exact between axes; of opposite
-// ones half a turn about `halfTurn`, a unit vector across the first.
+// Returns the shortest turn between unit vectors, exact between axes. Opposite vectors turn by half
+// about `halfTurn`, a unit vector across `from`.
 glm::dmat3 turnBetween(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& halfTurn) {
-    // Of nearly opposite ones the rest of the way goes from there, for what follows divides by what
-    // is lost in rounding.
+    // Nearly opposite vectors start with half a turn, as the formula divides by rounding errors.
     constexpr double kOpposite = -1 + 1e-6;
     if (glm::dot(from, to) < kOpposite) {
         const glm::dmat3 half = 2.0 * glm::outerProduct(halfTurn, halfTurn) - glm::dmat3(1.0);
@@ -321,7 +318,7 @@ glm::dmat3 turnBetween(const glm::dvec3& from, const glm::dvec3& to, const glm::
     return glm::dmat3(1.0) + cross + cross * cross / (1 + glm::dot(from, to));
 }
 
-// Who stands in a world where `up` is up.
+// Turns a viewer so that `up` is up.
 Viewer standingIn(const Viewer& viewer, const glm::dvec3& up) {
     const NamedView& front = namedView("front");
     const glm::dvec3 seen = viewer.toWorld(front.direction);
@@ -329,15 +326,14 @@ Viewer standingIn(const Viewer& viewer, const glm::dvec3& up) {
     return {turn * viewer.worldFromViewer, viewer.facesPatient};
 }
 
-// What is up where nobody says: of somebody who looks straight up or down, as the views have it.
+// Returns the default up. For lines of sight straight up or down it is that of the named views.
 glm::dvec3 defaultUp(const Viewer& viewer, const glm::dvec3& direction) {
     const glm::dvec3 up = viewer.toWorld(namedView("front").up);
     if (!areParallel(direction, up)) return up;
     return viewer.toWorld(namedView(glm::dot(direction, up) < 0 ? "top" : "bottom").up);
 }
 
-// Sets the three axes as a person turns a camera that looks along `pointed`, or else as the view
-// says, which stands on what is `up`; head towards `up`.
+// Sets the axes of a camera that looks along `pointed`, or else as the view says; head to `up`.
 void orient(Camera& camera, const CameraOptions& options, const Viewer& atFront,
             const std::optional<glm::dvec3>& pointed) {
     const NamedView& view = namedView(viewFrom(atFront, options.view));
@@ -354,7 +350,7 @@ void orient(Camera& camera, const CameraOptions& options, const Viewer& atFront,
             "a direction that differs from it");
     }
 
-    // The azimuth goes about the up that was given, the rest about the camera's own axes.
+    // Azimuth turns about the given up, the other angles about the camera's own axes.
     direction = turned(direction, up, options.azimuthDegrees);
     camera.right = glm::normalize(glm::cross(direction, up));
     camera.direction = turned(direction, camera.right, -options.elevationDegrees);
@@ -366,7 +362,7 @@ glm::dvec3 transformed(const glm::dmat4& worldFromIndex, const glm::dvec3& index
     return glm::dvec3(worldFromIndex * glm::dvec4(index, 1));
 }
 
-// The narrowest frame that holds the projected box both ways.
+// Returns the narrowest frame that holds the projected box in both directions.
 double fittingFrame(const Camera& camera, const IndexBox& box, const glm::dmat4& worldFromIndex) {
     const glm::dmat3 linear(worldFromIndex);
     const glm::dvec3 edges = glm::max(glm::dvec3(box.max) - glm::dvec3(box.min), 0.0);
@@ -379,14 +375,13 @@ double fittingFrame(const Camera& camera, const IndexBox& box, const glm::dmat4&
         voxel = std::min(voxel, glm::length(linear[axis]));
     }
 
-    // A point, or a line seen end-on, is framed as one voxel; rounding may keep it from being zero.
+    // A point, or a line seen end-on, is framed as one voxel. Rounding may make it more than zero.
     const double aspect = double(camera.sizePixels.x) / camera.sizePixels.y * camera.pixelAspect;
     const double width = std::max(extent.x, extent.y * aspect);
     return width > 1e-6 * voxel ? width : voxel;
 }
 
-// How far before the target the camera has to be for all voxels of the box to lie beyond it, edges
-// and footprints included.
+// Returns the distance before the target at which all voxels, with footprints, lie ahead.
 double clearDistance(const Camera& camera, const IndexBox& box, const glm::dmat4& worldFromIndex) {
     const glm::dmat3 linear(worldFromIndex);
     const glm::dvec3 middle = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
@@ -399,7 +394,7 @@ double clearDistance(const Camera& camera, const IndexBox& box, const glm::dmat4
     return distance;
 }
 
-// Half the width of the picture at distance 1.
+// Returns half the picture's width at distance 1.
 double tangentOf(const CameraOptions& options) {
     constexpr double kRadians = std::numbers::pi / 180;
     if (options.detectorWorld)
@@ -413,8 +408,8 @@ double tangentOf(const CameraOptions& options) {
     return tangent * options.sizePixels.x / options.sizePixels.y * options.pixelAspect;
 }
 
-// The nearest that the eye may come to the target for the whole box to be in the picture; a point,
-// or a line seen end-on, is framed as one voxel.
+// Returns the least distance from eye to target with the whole box in the picture. A point, or a
+// line seen end-on, is framed as one voxel.
 double fittingDistance(const Camera& camera, double tangent, const IndexBox& box,
                        const glm::dmat4& worldFromIndex) {
     const double aspect = double(camera.sizePixels.x) / camera.sizePixels.y * camera.pixelAspect;
@@ -432,23 +427,22 @@ double fittingDistance(const Camera& camera, double tangent, const IndexBox& box
     return std::max(distance, 0.5 * voxel / tangent);
 }
 
-// Places what looks from an eye: target, distance and frame.
 void placeEye(Camera& camera, const CameraOptions& options, const glm::dvec3& target,
               const IndexBox& box, const glm::dmat4& worldFromIndex) {
     const bool panorama = options.projection == Projection::kLatlong;
     const double tangent = panorama ? std::numbers::pi : tangentOf(options);
     double distance = 0;
     if (options.eyeWorld && options.direction) {
-        // What it looks at is as far away as the middle of the volume, but not behind.
+        // The target is as far away as the volume's middle, but not behind the eye.
         distance = std::max(glm::dot(target - *options.eyeWorld, camera.direction),
                             glm::length(glm::dvec3(worldFromIndex[0])));
         camera.targetWorld = *options.eyeWorld + distance * camera.direction;
     } else if (options.eyeWorld && target != *options.eyeWorld) {
-        // Turned about the eye, the line of sight leads elsewhere.
+        // Turning about the eye moves the target.
         distance = glm::distance(target, *options.eyeWorld);
         camera.targetWorld = *options.eyeWorld + distance * camera.direction;
     } else if (panorama) {
-        // From the target itself, at which it cannot look.
+        // The eye is at the target and cannot look at it.
         distance = glm::length(glm::dvec3(worldFromIndex[0]));
         camera.targetWorld = target + distance * camera.direction;
     } else {
@@ -465,8 +459,7 @@ void placeEye(Camera& camera, const CameraOptions& options, const glm::dvec3& ta
     }
 }
 
-// A camera that stands where a matrix says. What it looks at is as far away as the middle of the
-// volume, but not behind.
+// Places a camera by a matrix. The target is as far away as the volume's middle, but not behind.
 void placeByMatrix(Camera& camera, CameraOptions options, const IndexBox& box,
                    const glm::dmat4& worldFromIndex) {
     const CameraAxes axes =

@@ -26,7 +26,7 @@ bool isFinite(const glm::dmat4& matrix) {
     return true;
 }
 
-// What is wrong, or nothing.
+// Returns the fault, or nothing.
 std::string faultOf(const glm::dmat4& matrix, const glm::dvec3& lengths) {
     if (!isFinite(matrix)) return "a number that is not finite";
     const glm::dvec4 last(matrix[0][3], matrix[1][3], matrix[2][3], matrix[3][3]);
@@ -64,7 +64,7 @@ CameraAxes cameraAxes(const glm::dmat4& worldFromCamera, const std::string& what
                                       "last row, row by row"));
     }
     CameraAxes axes;
-    // Sums with 0 have no -0.
+    // Adding 0 removes -0.
     axes.direction = 0.0 - glm::normalize(glm::dvec3(worldFromCamera[2]));
     const glm::dvec3 up(worldFromCamera[1]);
     axes.right = glm::normalize(glm::cross(axes.direction, up));
@@ -76,7 +76,7 @@ CameraAxes cameraAxes(const glm::dmat4& worldFromCamera, const std::string& what
 
 namespace {
 
-// On the plane through the target: from there to the right, and down.
+// On the plane through the target, relative to it: right and down.
 glm::dvec2 offsetWorld(const Camera& camera, glm::dvec2 pixel) {
     return (pixel - camera.targetPixel()) *
            glm::dvec2(camera.pixelWorld(), camera.pixelHeightWorld());
@@ -142,7 +142,7 @@ glm::dmat4 Camera::ndcFromWorld() const {
     if (overscanPixels != glm::ivec2(0)) return withoutOverscan().ndcFromWorld();
     glm::dmat4 ndcFromCamera(1);
     if (projection == Projection::kPerspective) {
-        // Homogeneous: the fourth number is z, by which the others are divided.
+        // Homogeneous: the other components are divided by the fourth, z.
         ndcFromCamera[0][0] = targetDistanceWorld / frameWidthWorld;
         ndcFromCamera[1][1] = -targetDistanceWorld / frameHeightWorld();
         ndcFromCamera[2] = glm::dvec4(targetInFrame, 1, 1);

@@ -9,25 +9,23 @@
 
 namespace deltasplat {
 
-/// What a matrix says of a camera. The three directions are orthonormal.
+/// A camera's placement from a matrix. The three directions are orthonormal.
 struct CameraAxes {
     glm::dvec3 right{1, 0, 0};
     glm::dvec3 up{0, 1, 0};
     glm::dvec3 direction{0, 0, -1};
     glm::dvec3 positionWorld{0.0};
-    double scale = 1;  ///< of lengths that the camera has, > 0
+    double scale = 1;  ///< of the camera's lengths, > 0
 };
 
-/// By how much axes may differ in length, and the cosine of angles between them be other than 0:
-/// what numbers of three digits leave.
+/// Tolerance of the axes' relative lengths and of cosines: numbers of three digits leave as much.
 inline constexpr double kAxesRounding = 2e-3;
 
-/// Takes a matrix apart that turns, scales evenly and moves; what rounding has done to the axes is
-/// undone, first of the line of sight, then of up.
-/// @param worldFromCamera  of points as columns: x to the right, y up, z away from what is seen
-/// @param what             is wrong, for messages
-/// @throw Error(code) if it is not finite, projects, or is singular, mirrored, sheared or unevenly
-///        scaled
+/// Splits a matrix that turns, scales evenly and moves. Undoes rounding of the axes, first of the
+/// line of sight, then of up.
+/// @param worldFromCamera  columns; x to the right, y up, z away from the scene
+/// @param what             names the faulty input in messages
+/// @throw Error(code) if it is not finite, or projects, mirrors, shears, or scales to 0 or unevenly
 CameraAxes cameraAxes(const glm::dmat4& worldFromCamera, const std::string& what, ErrorCode code);
 
 }  // namespace deltasplat

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: P. Lacroute and M. Levoy, Fast Volume Rendering Using a Shear-Warp Factorization of the
-// Viewing Transformation, 1994. Deviates in that the base plane is sampled at a whole number of
-// points a voxel, or of voxels a point, and in that near-ties and near-zero shifts are snapped (see
+// Viewing Transformation, 1994. Deviates in that the base plane has a whole number of points per
+// voxel or of voxels per point, and in that near-ties and near-zero shifts are snapped (see
 // factorize).
 #include "view/factorization.h"
 
@@ -28,26 +28,25 @@ namespace deltasplat {
 
 namespace {
 
-// Beyond, footprints are so wide (defaultSigma) that more sheet pixels would show nothing else.
+// Above this, footprints are so wide (defaultSigma) that more sheet pixels make no difference.
 constexpr int kMaxAutomaticResolution = 2;
 
-// Columns of a matrix in the order of slices, the first away from the camera.
+// Returns a matrix's columns in slice order, the first away from the camera.
 glm::dmat3 stepsOf(const glm::dmat3& linear, const glm::ivec3& order, bool frontToBack) {
     return {frontToBack ? linear[order[0]] : -linear[order[0]], linear[order[1]], linear[order[2]]};
 }
 
-// One component of the shift, -1..1.
 double snapped(double shift) {
     if (std::abs(shift) < kSnap) return 0;
     return std::abs(shift) > 1 - kSnap ? std::copysign(1.0, shift) : shift;
 }
 
-// Where an index vector, slid along the line of sight, meets the plane of slice 0.
+// Projects an index vector along the line of sight to the plane of slice 0.
 glm::dvec2 onBasePlane(const glm::dvec3& index, const glm::ivec3& order, const glm::dvec2& shift) {
     return glm::dvec2(index[order[1]], index[order[2]]) + index[order[0]] * shift;
 }
 
-// The largest stretch of a 2x2 matrix is the root of the larger eigenvalue of its square.
+// The root of the larger eigenvalue of the squared matrix.
 double largestSingularValue(const glm::dmat2& m) {
     const double half = 0.5 * (glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]));
     const double difference = 0.5 * (glm::dot(m[0], m[0]) - glm::dot(m[1], m[1]));
@@ -55,7 +54,7 @@ double largestSingularValue(const glm::dmat2& m) {
 }
 
 double screenResolution(double pixelsPerVoxel) {
-    // Asked this way round because a frame too narrow for double arithmetic stretches by NaN.
+    // Negated, because a frame too narrow for doubles stretches by NaN.
     if (!(pixelsPerVoxel < kMaxAutomaticResolution)) return kMaxAutomaticResolution;
     return double(std::lround(std::max(pixelsPerVoxel, 1.0)));
 }
@@ -72,11 +71,10 @@ void checkResolution(double resolution) {
                 "a whole number within 1.." + std::to_string(kMaxResolution));
 }
 
-// Lines of sight of one axis, in steps (away, u, v), of which one shows a corner of the picture's
-// part that belongs to the axis.
+// Lines of sight of one axis, steps (away, u, v): one per corner of the axis' part of the picture.
 using Cone = std::vector<glm::dvec3>;
 
-// Cuts off what lies beyond a plane through the eye (I. Sutherland and G. Hodgman, 1974).
+// Clips at a plane through the eye (I. Sutherland and G. Hodgman, 1974).
 Cone clipped(const Cone& cone, const glm::dvec3& inward) {
     Cone inside;
     for (std::size_t i = 0; i < cone.size(); ++i) {
@@ -90,19 +88,18 @@ Cone clipped(const Cone& cone, const glm::dvec3& inward) {
     return inside;
 }
 
-// Slopes along u and v, from the least to the most.
+// A range of slopes along u and v.
 struct SlopeBox {
     glm::dvec2 least{-1.0};
     glm::dvec2 most{1.0};
 };
 
-// Those that are nearest to a whole number each.
 SlopeBox slopesNear(const glm::ivec2& slopeStep) {
     const glm::dvec2 middle(slopeStep);
     return {glm::max(middle - 0.5, -1.0), glm::min(middle + 0.5, 1.0)};
 }
 
-// What a picture shows of the lines of sight that have certain slopes along an axis.
+// Returns the visible lines of sight with certain slopes along an axis.
 Cone coneOf(const Camera& camera, const glm::dmat3& stepFromWorld, const SlopeBox& slopes) {
     const auto& [least, most] = slopes;
     const Cone whole = {
@@ -116,12 +113,12 @@ Cone coneOf(const Camera& camera, const glm::dmat3& stepFromWorld, const SlopeBo
     for (const glm::dvec3& inward : {glm::dvec3(-least.x, 1, 0), glm::dvec3(most.x, -1, 0),
                                      glm::dvec3(-least.y, 0, 1), glm::dvec3(most.y, 0, -1)})
         cone = clipped(cone, inward);
-    // Along one axis only points away count, and what touches a border shows nothing.
+    // Drops points that do not lead away, and parts that only touch a border.
     std::erase_if(cone, [](const glm::dvec3& ray) { return !(ray.x > 0); });
     return cone;
 }
 
-// Picture pixels that a slope of 1 covers around a slope, in the direction in which these are most.
+// Returns picture pixels per unit of slope, in the densest direction.
 double densityAt(const Camera& camera, const glm::dmat3& worldFromStep, glm::dvec2 slope) {
     const glm::dvec3 ray = worldFromStep * glm::dvec3(1, slope);
     glm::dvec3 across[2];
@@ -149,12 +146,11 @@ double densityAt(const Camera& camera, const glm::dmat3& worldFromStep, glm::dve
     return pixels * std::sqrt(0.5 * (a + b) + portable::hypot(0.5 * (a - b), mixed));
 }
 
-// Slopes along a corner of a cone, of which rounding makes no more than belong to the axis.
+// Returns the slope of a cone's corner. Clamps rounding errors to the axis' range.
 glm::dvec2 slopeOf(const glm::dvec3& ray) {
     return glm::clamp(glm::dvec2(ray.y, ray.z) / ray.x, -1.0, 1.0);
 }
 
-// Slopes that a cone has.
 SlopeBox slopesOf(const Cone& cone) {
     SlopeBox slopes{slopeOf(cone.front()), slopeOf(cone.front())};
     for (const glm::dvec3& ray : cone) {
@@ -164,10 +160,10 @@ SlopeBox slopesOf(const Cone& cone) {
     return slopes;
 }
 
-// The least length of a step along a slope of a box.
+// Returns the shortest step along a slope of a box.
 double shortestStep(const glm::dmat3& worldFromStep, const SlopeBox& slopes) {
     const glm::dvec3 &ahead = worldFromStep[0], &u = worldFromStep[1], &v = worldFromStep[2];
-    // Its square grows evenly away from where it is least: there, or next to it on an edge.
+    // The square grows away from its minimum, so the shortest is there or beside it on an edge.
     const auto best = [](const glm::dvec3& base, const glm::dvec3& along, double least,
                          double most) {
         const double slope = -glm::dot(base, along) / glm::dot(along, along);
@@ -184,7 +180,6 @@ double shortestStep(const glm::dmat3& worldFromStep, const SlopeBox& slopes) {
                      best(ahead + slopes.most.y * v, u, slopes.least.x, slopes.most.x)});
 }
 
-// The greatest length of a step along a slope of a box: at a corner.
 double longestStep(const glm::dmat3& worldFromStep, const SlopeBox& slopes) {
     double longest = 0;
     for (int corner = 0; corner < 4; ++corner) {
@@ -195,7 +190,7 @@ double longestStep(const glm::dmat3& worldFromStep, const SlopeBox& slopes) {
     return longest;
 }
 
-// How fine a picture shows slopes, on average over its corners and its middle.
+// Returns the picture's mean density of slopes over corners and middle.
 double densityOf(const Camera& camera, const Cone& cone, const glm::dmat3& worldFromStep) {
     glm::dvec2 sum(0);
     double logarithms = 0;
@@ -210,8 +205,7 @@ double densityOf(const Camera& camera, const Cone& cone, const glm::dmat3& world
     return portable::exp(logarithms / double(cone.size() + 1));
 }
 
-// Picture pixels that a voxel covers where the middle of the volume is seen, or would be; from
-// inside of it, where the nearest of its faces is.
+// Returns picture pixels per voxel at the volume's middle; inside of it, at the nearest face.
 double pixelsAtMiddle(const Camera& camera, const IndexBox& box, const glm::dmat3& linear,
                       const glm::dvec3& eye) {
     const glm::dvec3 away = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max)) - eye;
@@ -223,7 +217,7 @@ double pixelsAtMiddle(const Camera& camera, const IndexBox& box, const glm::dmat
         isInside ? std::max(std::abs(away[axis]), half[axis]) : std::abs(away[axis]);
     const glm::dmat3 steps = stepsOf(linear, order, away[axis] > 0);
     const glm::dvec2 slope = glm::dvec2(away[order[1]], away[order[2]]) / slices;
-    // Along the picture's own middle line of sight where the volume lies behind it.
+    // If the volume lies behind, along the picture's middle line of sight.
     const bool isAhead = camera.projection == Projection::kLatlong ||
                          glm::dot(steps * glm::dvec3(1, slope), camera.direction) > 0;
     const double finePixel = std::min(camera.pixelWorld(), camera.pixelHeightWorld());
@@ -255,7 +249,7 @@ Factorization factorize(const Camera& camera, const glm::dmat4& worldFromIndex,
     result.shiftPerSlice = {snapped(-direction[order[1]] / perSlice),
                             snapped(-direction[order[2]] / perSlice)};
 
-    // One step of the line of sight to the next slice, as snapped.
+    // One snapped step of the line of sight to the next slice.
     glm::dvec3 step(0);
     step[order[0]] = 1;
     step[order[1]] = -result.shiftPerSlice.x;
@@ -296,7 +290,6 @@ std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox
     const double pixels = pixelsAtMiddle(camera, box, linear, eye);
     const Camera frame = camera.withoutOverscan();
     std::vector<Factorization> regions;
-    // Adds what the picture shows of a region.
     const auto add = [&](Factorization region) {
         const SlopeBox all = region.slopeStep ? slopesNear(*region.slopeStep) : SlopeBox();
         const glm::dmat3 stepFromWorld = glm::inverse(region.worldFromStep);
@@ -305,7 +298,7 @@ std::vector<Factorization> factorizeRegions(const Camera& camera, const IndexBox
         const SlopeBox slopes = slopesOf(cone);
         region.slopeMin = glm::clamp(slopes.least, all.least, all.most);
         region.slopeMax = glm::clamp(slopes.most, all.least, all.most);
-        // What is around the frame changes nothing within it.
+        // The picture within the frame must not depend on overscan.
         const Cone ofFrame = coneOf(frame, stepFromWorld, all);
         const Cone& shown = ofFrame.size() < 3 ? cone : ofFrame;
         region.pixelsPerSlope = densityOf(camera, shown, region.worldFromStep);
@@ -357,14 +350,12 @@ double mostPixelsOf(double lengthWorld, const Camera& camera, const IndexBox& bo
         nearest = std::min(nearest, glm::dot(at - camera.eyeWorld(), camera.direction));
         radius = std::max(radius, glm::length(at - middle));
     }
-    double pixels = 0;  // of a length of 1 at distance 1
+    double pixels = 0;  // of length 1 at distance 1
     if (isPanorama) {
-        // The box lies in a ball.
         nearest = glm::length(middle - camera.eyeWorld()) - radius;
         pixels = camera.sizePixels.x / (2 * std::numbers::pi);
     } else {
-        // What lies along a line of sight beside the middle one covers pixels as well. What is
-        // around the frame changes nothing within it.
+        // Oblique lengths cover pixels, too. The frame's picture must not depend on overscan.
         const Camera frame = camera.withoutOverscan();
         double aside = 1;
         for (int corner = 0; corner < 4; ++corner) {
@@ -381,11 +372,11 @@ double mostPixelsOf(double lengthWorld, const Camera& camera, const IndexBox& bo
 
 namespace {
 
-// The same from an eye: slopes have other units where slices and voxels are not divided alike.
+// For an eye. Slopes change their unit if slices and voxels are divided differently.
 Factorization subdividedFromEye(const Factorization& view, const Subdivision& parts) {
     Factorization result = view;
     const glm::dvec3 per = parts.per();
-    // What is joined is counted as its first voxel, and lies between both.
+    // Joined voxels are counted from the first, and lie in the middle of both.
     result.eye = (*view.eye - glm::dvec3(parts.origin)) * per + 0.5 * (per - 1.0) +
                  0.5 * glm::dvec3(0, parts.slants[1]);
     for (int axis = 0; axis < 3; ++axis) result.worldFromStep[axis] /= per[axis];
@@ -409,8 +400,7 @@ Factorization subdivided(const Factorization& view, const Subdivision& parts) {
     result.shiftPerSlice *= within / slices;
     result.sliceStepWorld /= slices;
     result.pixelsPerVoxel /= within;
-    // The first thin voxel lies before the middle of the one that it is a part of, on each axis; of
-    // what is joined, the first voxel before the middle of all.
+    // The first thin voxel lies before its voxel's centre, the first joined one before the middle.
     const glm::dvec2 alongSlices = parts.joined > 1
                                        ? -middleOfJoined(view.shiftPerSlice, parts.joinedSlants())
                                        : (0.5 - 0.5 / slices) * view.shiftPerSlice;

@@ -11,11 +11,11 @@
 
 namespace deltasplat {
 
-/// Directions this close are the same: rounding in a transform or an angle must neither choose the
-/// axis of a diagonal view, nor tilt a straight one, nor decide how one is drawn.
+/// Directions this close are equal. Rounding in a transform or an angle must not choose the axis of
+/// a diagonal view, tilt a straight view, or decide how a view is drawn.
 inline constexpr double kSnap = 1e-9;
 
-/// Returns the axis that a direction is most parallel to, of several the last.
+/// Returns the axis most parallel to a direction; the last one of several.
 inline int mostParallelAxis(const glm::dvec3& direction) {
     const glm::dvec3 along = glm::abs(direction);
     const double largest = std::max({along.x, along.y, along.z});
@@ -25,8 +25,7 @@ inline int mostParallelAxis(const glm::dvec3& direction) {
     return 0;
 }
 
-/// Returns where voxels lie as slices count them, in the index space of a volume's own: from
-/// (slice, u, v), of what is divided its parts, to (x, y, z). Not of joined slices.
+/// Returns the map from divided voxels (slice, u, v) to (x, y, z). Not for joined slices.
 inline glm::dmat4 indexFromThinVoxel(int sliceAxis, const Subdivision& parts) {
     const glm::ivec3 order = sliceOrder(sliceAxis);
     const glm::dvec3 per(parts.slices, parts.within, parts.within);

@@ -38,13 +38,13 @@ void checkNumbers(const FilmCamera& camera) {
     checkAtLeast0("film: nearWorld", camera.nearWorld);
 }
 
-// What of the film's plane the picture shows, and what its pixels are like.
+// The visible part of the film's plane, and its pixels.
 struct Gate {
     glm::dvec2 sizeMm;
     double pixelAspect;
 };
 
-// Width, in mm, of a picture so many times as wide as high.
+// Returns the width in mm of a picture with this aspect.
 double widthOf(const FilmCamera& camera, double aspect) {
     const glm::dvec2 film = camera.apertureMm;
     if (film.y == 0) return film.x;
@@ -106,7 +106,6 @@ CameraOptions cameraOptions(const FilmCamera& camera, glm::ivec2 sizePixels) {
 
 namespace {
 
-// The same camera with so many pixels more, or less, at each side.
 Camera grown(const Camera& camera, glm::ivec2 pixels) {
     Camera other = camera;
     other.overscanPixels += pixels;

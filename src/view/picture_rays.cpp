@@ -22,10 +22,10 @@ PictureRays::PictureRays(const Camera& camera, const glm::dmat3& fromWorld) {
     const glm::dvec2 size(camera.sizePixels);
     const bool flat = camera.projection == Projection::kPerspective;
     const glm::dvec2 middle = camera.targetPixel();
-    // Of a flat picture at distance 1.
+    // For a flat picture at distance 1.
     const double pixel = camera.pixelWorld() / camera.targetDistanceWorld;
     const double pixelHeight = camera.pixelHeightWorld() / camera.targetDistanceWorld;
-    // Of a panorama: the angle of a pixel.
+    // For a panorama: the angle of a pixel.
     const glm::dvec2 angle = glm::dvec2(2, 1) * std::numbers::pi / size;
     for (int x = 0; x < camera.sizePixels.x; ++x) {
         const double across = x + 0.5 - middle.x;
@@ -58,9 +58,8 @@ double arcSine(double x) {
     return portable::atan2(x, std::sqrt(1 - x * x));
 }
 
-// Pixels of a size, from a box of positions.
 PixelBox pixelsOf(const glm::dvec2& low, const glm::dvec2& high, const glm::ivec2& size) {
-    // What filters reach.
+    // Reach of filters.
     constexpr double kAround = 4;
     const glm::dvec2 most(size);
     return {glm::ivec2(glm::clamp(glm::floor(low - kAround), glm::dvec2(0), most)),
@@ -88,7 +87,7 @@ SeenBox seenBox(const IndexBox& box, const glm::dmat4& world, const Camera& came
         for (const glm::dvec3& corner : around)
             radius = std::max(radius, glm::distance(middle, corner));
         const double distance = glm::distance(middle, camera.eyeWorld());
-        // Nearer than that it is all around, or nearly so.
+        // Closer than this, the box is nearly all around.
         constexpr double kNear = 1.5;
         if (!(distance > kNear * radius)) return all;
         const double pixelsPerRadian = size.x / (2 * std::numbers::pi);
@@ -103,7 +102,7 @@ SeenBox seenBox(const IndexBox& box, const glm::dmat4& world, const Camera& came
             const double columns =
                 pixelsPerRadian *
                 arcSine(std::min(1.0, portable::sin(angle) / portable::cos(latitude)));
-            // What lies where left and right meet is seen at both.
+            // Boxes across the seam of left and right are visible at both.
             constexpr double kSeam = 4;
             if (at.x - columns > kSeam && at.x + columns < size.x - kSeam) {
                 low.x = at.x - columns;

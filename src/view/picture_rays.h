@@ -12,21 +12,20 @@
 
 namespace deltasplat {
 
-/// Directions in which the pixels of a picture are seen from an eye, made row by row and column by
-/// column: rays are sums and products of what their row and their column have.
+/// Directions from an eye through a picture's pixels, from an entry per row and one per column.
 class PictureRays {
   public:
-    /// @param fromWorld  linear: what directions are wanted in
+    /// @param fromWorld  linear map to the space of the directions
     PictureRays(const Camera& camera, const glm::dmat3& fromWorld);
 
-    /// Returns the direction, not of length 1, of a pixel's middle.
+    /// Returns the direction through a pixel's middle. Its length is not 1.
     glm::dvec3 at(int x, int y) const {
         const Row& row = rows_[std::size_t(y)];
         return row.share * columns_[std::size_t(x)].ray + row.rest;
     }
 
-    /// By how much directions change for each pixel to the right, or down: how steeply in the
-    /// pixel's middle, so that they are the same from left and right.
+    /// Change of the direction per pixel to the right, or down: the derivative at the pixel's
+    /// middle, so that both sides get the same.
     glm::dvec3 alongX(int x, int y) const {
         return rows_[std::size_t(y)].share * columns_[std::size_t(x)].change;
     }
@@ -51,13 +50,13 @@ class PictureRays {
     std::vector<Row> rows_;
 };
 
-/// How a picture shows a box of voxels.
+/// Extent of a box of voxels in a picture.
 struct SeenBox {
-    PixelBox part;         ///< pixels that may show something of it
-    glm::dvec2 size{0.0};  ///< of the box in the picture, in pixels; infinite if the eye is near
+    PixelBox part;         ///< pixels that may show the box
+    glm::dvec2 size{0.0};  ///< in picture pixels; infinite if the eye is near
 };
 
-/// Returns what a picture may show of a box whose voxels reach `reach` voxels beyond it.
+/// Returns the extent of a box whose voxels reach `reach` voxels beyond it.
 SeenBox seenBox(const IndexBox& box, const glm::dmat4& worldFromIndex, const Camera& camera,
                 double reach);
 

@@ -57,7 +57,7 @@ std::uint64_t countBitsKernel(std::span<const std::uint64_t> masks) {
 MaskCounts countMasksKernel(std::span<const std::uint64_t> masks) {
     MaskCounts counts;
     for (const std::uint64_t mask : masks) {
-        // The lowest bit of a row is set where any is.
+        // Sets a row's lowest bit if any bit of the row is set.
         std::uint64_t rows = mask | mask >> 4;
         rows |= rows >> 2;
         rows |= rows >> 1;
@@ -70,8 +70,7 @@ MaskCounts countMasksKernel(std::span<const std::uint64_t> masks) {
     return counts;
 }
 
-// Writes the classes of 512 codes in their order, of numbers that are so much more than their
-// codes.
+// Writes the classes of 512 codes in order. `numbers` are codes plus kMore.
 template <Code kMore>
 HWY_INLINE void writeClasses(const ClassRamp& ramp, const std::uint16_t* HWY_RESTRICT numbers,
                              ClassIndex* HWY_RESTRICT classes) {

@@ -10,38 +10,34 @@
 
 namespace deltasplat {
 
-/// Compares the 64 slots of two slices of a block; bit n is set where slot n differs.
+/// Compares the 64 slots of two slices of a block. Bit n of the result: slot n differs.
 std::uint64_t differingSlots(const Slot* a, const Slot* b);
 
-/// Compares the eight slices of a block, `classes` [8][64], each with the one before it, the first
-/// with `before` [64]. Bit n of visible[s] is set where voxel n of slice s is not 0, of changed[s]
-/// where it differs.
+/// Compares each of a block's eight slices, `classes` [8][64], with the slice before; the first
+/// with `before` [64]. Bit n of visible[s]: voxel n is not 0. Bit n of changed[s]: voxel n differs.
 void compareClasses(const std::uint16_t* before, const std::uint16_t* classes,
                     std::uint64_t* visible, std::uint64_t* changed);
 
-/// Returns how many bits are set in all masks together.
 std::uint64_t countBits(std::span<const std::uint64_t> masks);
 
-/// A row of eight voxels takes as long to be written as so many voxels one by one.
+/// Writing a row of eight voxels takes as long as writing this many single voxels.
 inline constexpr int kVoxelsOfRow = 3;
 
-/// What masks of 64 voxels have.
+/// Counts over masks of 64 voxels.
 struct MaskCounts {
     std::uint64_t voxels = 0;
-    std::uint64_t words = 0;  ///< masks that have any
-    /// About how long they take to be written to pixels of their own: as long as so many that are
-    /// written one by one, which all of a mask are, or, if it is less, the rows that have any.
-    /// (Whole slices are written in rows always, but those of few voxels measure as if they were
-    /// not: docs/decisions.md.)
+    std::uint64_t words = 0;  ///< masks with any voxel
+    /// Estimated time to write the voxels, in single voxels: per mask all voxels or all non-empty
+    /// rows, whichever is faster. (Whole slices always use rows, but sparse ones measure so:
+    /// docs/decisions.md.)
     std::uint64_t writes = 0;
 };
 MaskCounts countMasks(std::span<const std::uint64_t> masks);
 
-/// Writes the classes of the 512 codes of a leaf, `[x][y][z]`, as they lie along a slice axis,
-/// `[slice][u][v]`.
+/// Writes the classes of a leaf's 512 codes, `[x][y][z]`, in slice order, `[slice][u][v]`.
 void classesOfLeaf(const ClassRamp& ramp, const Code* codes, int sliceAxis, ClassIndex* classes);
 
-/// Writes the classes of the 512 slots of a block in their order: 0, or a code and one.
+/// Writes the classes of a block's 512 slots in the same order. A slot is 0 or code + 1.
 void classesOfSlots(const ClassRamp& ramp, const ShortSlot* slots, ClassIndex* classes);
 
 }  // namespace deltasplat

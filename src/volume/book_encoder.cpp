@@ -18,8 +18,7 @@ namespace {
 
 constexpr int kStretchBits = 17;
 
-// Numbers stretches of the floats in increasing order, 256 an octave. What is beyond the floats is
-// in the outermost.
+// Numbers stretches of the floats in increasing order, 256 per octave; the outermost go on.
 std::size_t stretchOf(double value) {
     return orderOfBits(std::bit_cast<std::uint32_t>(float(value))) >> (32 - kStretchBits);
 }
@@ -55,7 +54,7 @@ void BookEncoder::makeStretches() {
         const std::int32_t steps = stretches_[i + 1].first - stretches_[i].first - 1;
         if (steps < 1) continue;
         const auto perUnit = float(steps / (first[steps] - *first));
-        // Between denormals there may be no such number.
+        // Between denormals the quotient may be infinite.
         if (std::isfinite(perUnit)) stretches_[i].codesPerUnit = perUnit;
     }
 }
@@ -79,8 +78,8 @@ Code BookEncoder::tableCode(double value) const {
     return places_[at].code >= 0 ? Code(places_[at].code) : book_.codeOf(value);
 }
 
-// Returns the first code whose value is not below `value`, as std::lower_bound would. Steps within
-// a stretch are mostly alike, which says where to look.
+// Returns the first code whose value is not below `value`, like std::lower_bound. Steps within a
+// stretch are mostly equal, so an estimate finds the code.
 std::size_t BookEncoder::firstNotBelow(double value) const {
     const double* table = book_.table->data();
     const Stretch& stretch = stretches_[stretchOf(value)];
@@ -101,7 +100,7 @@ std::size_t BookEncoder::firstNotBelow(double value) const {
     return std::size_t(std::lower_bound(table + first, table + last, value) - table);
 }
 
-// As CodeBook::codeOf, which looks through the whole table.
+// Like CodeBook::codeOf, without a search of the whole table.
 Code BookEncoder::nearestCode(double value) const {
     const std::vector<double>& table = *book_.table;
     const std::size_t code = firstNotBelow(value);
@@ -122,12 +121,12 @@ double halfValue(Code code) {
 
 Code nearestHalfCode(double value) {
     if (std::isnan(value)) return codeOfHalfBits(0x7e00);
-    // Only an infinity becomes one: everything else has a nearest finite half.
+    // Only an infinity becomes an infinite half. Other values have a nearest finite half.
     const double largest = 65504;
     if (std::isinf(value)) return codeOfHalfBits(value > 0 ? 0x7c00 : 0xfc00);
     if (std::fabs(value) >= largest) return codeOfHalfBits(value > 0 ? 0x7bff : 0xfbff);
 
-    // A double rounded to float and then to half can miss the nearest half by one step.
+    // Rounding a double to float and then to half can miss the nearest half by one step.
     const Code code = codeOfHalfBits(Half(float(value)).bits());
     Code best = code;
     for (const Code other : {Code(code - 1), Code(code + 1)}) {
@@ -143,8 +142,7 @@ double roundedUp(double step, int significantBits) {
     return std::ldexp(std::ceil(std::ldexp(mantissa, significantBits)), exponent - significantBits);
 }
 
-// The most significant bits of a step, at most 8, with which multiples of it up to `large` are
-// numbers of the kind.
+// The most significant bits of a step, 8 at most, so that multiples to `large` are numbers.
 int significantBitsOf(double step, double large, CodeBook::Values values) {
     const int digits = values == CodeBook::Values::kFloat ? std::numeric_limits<float>::digits
                                                           : std::numeric_limits<double>::digits;
@@ -152,7 +150,6 @@ int significantBitsOf(double step, double large, CodeBook::Values values) {
     return std::clamp(digits - multiple, 1, 8);
 }
 
-// The largest value of a kind that is at most `value` > 0.
 double roundedDown(double value, CodeBook::Values kind) {
     using Values = CodeBook::Values;
     if (kind == Values::kWhole) return std::floor(value);
@@ -169,8 +166,8 @@ Code nearestTableCode(const std::vector<double>& table, double value) {
     return Code(value - table[index - 1] < *above - value ? index - 1 : index);
 }
 
-// Half of the largest step that a value next to the code can have been on: values between two
-// pieces go to the nearer one.
+// Returns half of the largest step next to the code. Values between two pieces go to the nearer
+// piece, so the code may have the step of either.
 double pieceError(const std::vector<CodeBook::Piece>& pieces, Code code) {
     std::size_t i = 0;
     int first = 0;
@@ -200,7 +197,7 @@ Code CodeBook::codeOf(double value) const {
 double CodeBook::largestErrorOf(Code code) const {
     if (kind == Kind::kLinear) return step / 2;
     if (kind == Kind::kPieces) return pieceError(*pieces, code);
-    // An error that is a share of the source's value is a larger share of a smaller one's.
+    // The error is a share of the source's value, which may be smaller than the code's value.
     if (relativeError > 0) return relativeError / (1 - relativeError) * std::fabs(valueOf(code));
     return 0;
 }
@@ -235,7 +232,7 @@ CodeBook CodeBook::half() {
 
 CodeBook CodeBook::linear(double low, double high, int bits, Values values) {
     if (!(high > low)) return {Kind::kLinear, low, 0, nullptr, 0};
-    // A step below the spacing of values would give neighbouring codes the same one.
+    // A step below the spacing of values would give neighbouring codes the same value.
     const double large = std::max(std::fabs(low), std::fabs(high));
     const double spacing = spacingBelow(large, values);
     const double steps = double((1 << bits) - 1);
@@ -269,8 +266,8 @@ CodeBook CodeBook::ofPieces(std::vector<Piece> pieces) {
 }
 
 std::optional<CodeBook> CodeBook::relative(const Range& range, double error) {
-    // The middle between two neighbours is the farthest from both, so the ratio of neighbours must
-    // be at most (1 + error) / (1 - error); a little less leaves room for rounding.
+    // The middle of two neighbours is farthest from both, so the ratio of neighbours must be at
+    // most (1 + error) / (1 - error). A little less leaves room for rounding.
     const double ratio = 1 + (2 * error / (1 - error)) * (1 - 1e-6);
     const auto magnitudes = [&](double largest) {
         std::vector<double> values;

@@ -12,27 +12,26 @@
 
 namespace deltasplat {
 
-/// Measures how far codes are from values. Those of several threads come together in one meter;
-/// the largest of all is the same in any order.
+/// Measures the largest distance between values and their codes. Threads collect parts of their
+/// own, and the order in which the meter adds them does not matter.
 class ErrorMeter {
   public:
-    /// @param bulkMagnitude  the least magnitude that differences are taken as a share of
+    /// @param bulkMagnitude  relative errors are shares of at least this magnitude
     ErrorMeter(const CodeBook& book, double bulkMagnitude)
         : book_(book), bulkMagnitude_(bulkMagnitude) {}
 
-    /// What one thread has found.
     class Part {
       public:
         explicit Part(const ErrorMeter& meter)
             : book_(meter.book_),
               table_(book_.table ? book_.table->data() : nullptr),
               bulkMagnitude_(meter.bulkMagnitude_) {}
-        /// @param code  one that the book has
+        /// @param code  a code of the book
         void add(double value, Code code) {
             const double off = std::fabs(value - (table_ ? table_[code] : book_.valueOf(code)));
             found_.absolute = std::max(found_.absolute, off);
             const double magnitude = std::max(std::fabs(value), bulkMagnitude_);
-            // Divisions take long, and hardly any is the largest.
+            // Divisions are slow, and hardly any error is the largest so far.
             if (off <= found_.relative * magnitude * (1 - 0x1p-50)) return;
             if (off == 0) return;
             found_.relative = std::max(found_.relative, magnitude > 0 ? off / magnitude : 1);
@@ -41,7 +40,7 @@ class ErrorMeter {
       private:
         friend ErrorMeter;
         const CodeBook& book_;
-        const double* table_;  // null: it has none
+        const double* table_;  // null: the book has no table
         double bulkMagnitude_;
         CodeError found_;
     };
@@ -65,8 +64,8 @@ class ErrorMeter {
     std::atomic<double> relative_ = 0;
 };
 
-/// Turns many finite values into codes of one book, as CodeBook::codeOf does, but in a few
-/// nanoseconds whatever the book. Half books: exact for halves, otherwise rounded by way of float.
+/// Turns finite values into codes of one book, like CodeBook::codeOf but in a few nanoseconds for
+/// any kind of book. Half books are exact for halves; other values are rounded through float.
 class BookEncoder {
   public:
     explicit BookEncoder(const CodeBook& book);
@@ -82,11 +81,10 @@ class BookEncoder {
     CodeBook book_;
     struct Entry {
         std::uint64_t bits;
-        std::int32_t code;  // negative: nothing here
+        std::int32_t code;  // negative: empty entry
     };
-    std::vector<Entry> places_;  // an open hash table of the book's table, where that is exact
-    /// Where it is not: the codes whose values are in each of many stretches of the floats, up to
-    /// the first of the next.
+    std::vector<Entry> places_;  // hash table of an exact book's table, open addressing
+    /// Stretches of the floats, for an inexact table. A stretch's codes end where the next begins.
     struct Stretch {
         std::int32_t first;
         float codesPerUnit;

@@ -48,7 +48,7 @@ std::optional<ClassRamp> ClassRamps::of(Code lowest, Code highest) const {
         if (end + 1 < pieces_.size() && pieces_[end + 1].begin <= highest) return {};
         last = pieces_[end].begin;
     }
-    // Of what stays, the codes asked for may begin behind its first.
+    // The range may begin behind the first code of a constant piece.
     return ClassRamp{std::min(first, last), last, std::span(pieces_).subspan(begin, end - begin)};
 }
 

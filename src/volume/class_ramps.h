@@ -11,31 +11,28 @@
 
 namespace deltasplat {
 
-/// Codes from a first one on whose classes go up by one with each.
+/// A run of codes, from `begin` on, whose class rises by one per code.
 struct RampPiece {
     Code begin;
-    ClassIndex shift;  ///< a code's class less the code, modulo 2^16
+    ClassIndex shift;  ///< class minus code, modulo 2^16
 };
 
-/// Classes of a range of codes as arithmetic has them: none before the first, then those of pieces,
-/// one behind the other, up to the last, whose class all behind it have.
+/// Classes as arithmetic: 0 below `first`, then consecutive pieces; above `last` that of `last`.
 struct ClassRamp {
     Code first;
     Code last;
-    std::span<const RampPiece> pieces;  ///< in increasing order; the first one's begin is of no use
+    std::span<const RampPiece> pieces;  ///< in increasing order; first `begin` unused
 };
 
-/// Finds ramps in a map of classes, as transfer functions make them over the codes of a block: a
-/// few vectors work out what 512 voxels would have to look up. Not one piece but some, for classes
-/// of dark colours come behind the others.
+/// Finds ramps in a class map, as transfer functions make them, to replace 512 lookups per block by
+/// a few vectors. Several pieces per ramp, because classes of dark colours come after the others.
 class ClassRamps {
   public:
     /// @param classOfSlot     [kSlotCount]
-    /// @param lowest,highest  codes that may be asked for
+    /// @param lowest,highest  range of codes that calls of of() stay within
     ClassRamps(std::span<const Slot> classOfSlot, Code lowest, Code highest);
 
-    /// Returns what codes from `lowest` to `highest` have, as long as this is there; nothing if it
-    /// is no ramp of few pieces.
+    /// Returns a ramp that points into this object; nothing if the range is no ramp of few pieces.
     std::optional<ClassRamp> of(Code lowest, Code highest) const;
 
   private:
@@ -43,8 +40,7 @@ class ClassRamps {
     enum class Kind { kNone, kRises, kStays };
 
     Code highest_;
-    // Of what codes are from the first asked for on, in increasing order. What stays is a piece of
-    // one code, and others of its class.
+    // Pieces in increasing order of code. A constant stretch is one piece, begun by its first code.
     std::vector<RampPiece> pieces_;
     std::vector<Kind> kinds_;  // [piece]
 };

@@ -21,10 +21,8 @@ namespace deltasplat {
 
 namespace {
 
-// What the stage keeps for each block: itself, its place and its changes.
 constexpr double kBytesPerBlock = sizeof(CodeBlock) + 16 + 128;
 
-// Calls use(box, slot) for every active tile in a node whose slot is not empty.
 template <typename Node, typename SlotOf, typename Use>
 void forVisibleTilesOf(const Node& node, const SlotOf& slotOf, const Use& use) {
     for (auto tile = node.cbeginValueOn(); tile; ++tile) {
@@ -34,8 +32,7 @@ void forVisibleTilesOf(const Node& node, const SlotOf& slotOf, const Use& use) {
     }
 }
 
-// Calls use(box, slot) for every active tile whose slot is not empty. Node by node: OpenVDB's
-// iterators over a whole tree stop at every leaf on the way.
+// Calls use(box, slot) for active tiles with a slot. OpenVDB's whole-tree iterators visit leaves.
 template <typename SlotOf, typename Use>
 void forVisibleTiles(const CodeTree& codes, const SlotOf& slotOf, const Use& use) {
     using Upper = CodeTree::Tree::RootNodeType::ChildNodeType;
@@ -49,13 +46,12 @@ void forVisibleTiles(const CodeTree& codes, const SlotOf& slotOf, const Use& use
     for (const Lower* node : lowers) forVisibleTilesOf(*node, slotOf, use);
 }
 
-// Which codes have slots other than empty.
 SeenCodes seenCodes(std::span<const Slot> slotMap) {
     return SeenCodes([&](int code) { return slotMap[std::size_t(code) + 1] != kEmptySlot; });
 }
 
 // Returns, in parts, the leaves with active voxels whose slots may be other than empty.
-// @param cone  null, or what else is left out
+// @param cone  null, or leaves outside of it are left out
 std::vector<std::vector<CodeBlock>> visibleLeaves(const CodeTree& codes, int sliceAxis,
                                                   std::span<const Slot> slotMap,
                                                   const SeenCone* cone) {
@@ -65,7 +61,7 @@ std::vector<std::vector<CodeBlock>> visibleLeaves(const CodeTree& codes, int sli
     if (!slotMap.empty()) seen = seenCodes(slotMap);
     const std::size_t count = (all->size() + kPart - 1) / kPart;
     std::vector<std::vector<CodeBlock>> parts(count);
-    // Those that other cones see as well: all are mostly wanted in the end.
+    // Includes leaves outside of the cone, because most are needed in the end.
     std::vector<std::vector<const CodeTree::Leaf*>> toRead(codes.lacksLeaves() ? count : 0);
     parallelFor(parts.size(), [&](std::size_t part) {
         const std::size_t end = std::min((part + 1) * kPart, all->size());
@@ -73,7 +69,7 @@ std::vector<std::vector<CodeBlock>> visibleLeaves(const CodeTree& codes, int sli
             const CodeLeaf& one = (*all)[i];
             if (seen && !seen->hasAny(one.lowest, one.highest)) continue;
             if (!toRead.empty()) toRead[part].push_back(one.leaf);
-            // Shifting keeps the floor of negative positions.
+            // Shifting rounds negative positions down.
             const glm::ivec3 position = toSliceOrder(one.origin >> 3, sliceAxis);
             if (cone && !cone->sees(position)) continue;
             parts[part].push_back(
@@ -92,7 +88,6 @@ Slot inactiveSlot(Code number) {
 
 using BlockParts = std::vector<std::vector<CodeBlock>>;
 
-// The first and the last (u, v) of some blocks.
 struct ColumnBox {
     glm::i64vec2 first{std::numeric_limits<std::int64_t>::max()};
     glm::i64vec2 last{std::numeric_limits<std::int64_t>::min()};
@@ -103,20 +98,20 @@ struct ColumnBox {
     }
 };
 
-// As comesBefore; of two of the same place, first the one that has no inactive voxels.
+// As comesBefore. At the same place, the block without inactive voxels comes first.
 bool comesFirst(const CodeBlock& a, const CodeBlock& b) {
     if (a.position == b.position) return !a.inactive && b.inactive;
     return comesBefore(a, b);
 }
 
-// Returns blocks by u, then v, then slice. Those of each column are counted and put into place, in
-// which one thread mostly puts them in order: trees list leaves so, whatever the axis.
+// Returns blocks by u, then v, then slice. Sorts by counting the blocks per column. Within a column
+// one thread mostly finds them in order, because trees list leaves in order along every axis.
 std::vector<CodeBlock> inColumns(const BlockParts& parts) {
     std::size_t count = 0;
     for (const auto& part : parts) count += part.size();
     std::vector<CodeBlock> sorted;
     if (count == 0) return sorted;
-    // One thread is through with few before others begin.
+    // One thread finishes this many before other threads start.
     constexpr std::size_t kFew = 8192;
     const bool isAlone = count < kFew || threadCount() == 1;
     const auto forPieces = [&](std::size_t pieces, const auto& use) {
@@ -136,7 +131,7 @@ std::vector<CodeBlock> inColumns(const BlockParts& parts) {
     ColumnBox box;
     for (const ColumnBox& one : boxes) box.include(one);
     const glm::i64vec2 size = box.last - box.first + std::int64_t{1};
-    // Where blocks lie far apart there are too many columns.
+    // If blocks lie far apart, there are too many columns.
     constexpr double kMostColumnsPerBlock = 4;
     if (double(size.x) * double(size.y) > kMostColumnsPerBlock * double(count)) {
         sorted.reserve(count);
@@ -148,7 +143,7 @@ std::vector<CodeBlock> inColumns(const BlockParts& parts) {
         const glm::i64vec2 at = glm::i64vec2(block.position.y, block.position.z) - box.first;
         return std::size_t(at.x * size.y + at.y);
     };
-    std::vector<std::atomic<std::size_t>> ends(std::size_t(size.x * size.y));  // of columns
+    std::vector<std::atomic<std::size_t>> ends(std::size_t(size.x * size.y));  // [column]
     const auto countUp = [&](std::atomic<std::size_t>& number) {
         constexpr auto kAnyOrder = std::memory_order_relaxed;
         if (!isAlone) return number.fetch_add(1, kAnyOrder);
@@ -185,10 +180,10 @@ BlockReader::BlockReader(const CodeTree& codes, const CodeTree* inactive, int sl
 std::vector<CodeBlock> BlockReader::listBlocks(const CodeTree& codes, const CodeTree* inactive,
                                                const SeenCone* seen) const {
     BlockParts parts = visibleLeaves(codes, sliceAxis_, slotMap_, seen);
-    // A tile may stand for any number of blocks: know how many before they are listed.
+    // A tile may stand for any number of blocks, so count them before listing.
     double leaves = 0;
     for (const auto& part : parts) leaves += double(part.size());
-    double pieces = 0;  // and leaves of inactive voxels
+    double pieces = 0;  // of tiles, and leaves of inactive voxels
     if (inactive) pieces += inactive->tree().leafCount();
     const auto slotOfCode = [this](Code code) { return slotOf(code); };
     const auto count = [&](const openvdb::CoordBBox& box, Slot) { pieces += box.volume() / 512.0; };
@@ -212,7 +207,7 @@ std::vector<CodeBlock> BlockReader::listBlocks(const CodeTree& codes, const Code
     return inColumns(parts);
 }
 
-// A block may have both active voxels and inactive ones with values: two entries become one.
+// Merges entries of a block with both active voxels and inactive voxels with values.
 void BlockReader::mergeDoubles() {
     std::size_t kept = 0;
     for (const CodeBlock& next : blocks_) {
@@ -266,7 +261,7 @@ void BlockReader::readLastSlice(const CodeBlock& block, std::span<Slot, 64> slot
     readInactive(block, 7, slots.data());
 }
 
-// Adds inactive voxels that hold a value of their own to slots that begin with a slice.
+// Adds inactive voxels with values of their own. `slots` begins with slice `firstSlice`.
 void BlockReader::readInactive(const CodeBlock& block, int firstSlice, Slot* slots) const {
     if (!block.inactive) return;
     const Code* numbers = block.inactive->buffer().data();

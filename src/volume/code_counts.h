@@ -20,18 +20,16 @@
 
 namespace deltasplat {
 
-/// Counts how often each code occurs. Counts are large: there is one for each worker, that is, for
-/// what goes on at the same time, not for each piece of work.
+/// Counts how often each code occurs. One table per worker, because tables are large.
 class CodeCounts {
   public:
-    /// @param workers  at least one
     explicit CodeCounts(std::size_t workers) : counts_(workers) {}
     CodeCounts() : CodeCounts(std::size_t(std::max(1, threadCount()))) {}
 
     std::size_t workers() const { return counts_.size(); }
-    /// One call at a time for each worker.
+    /// Allows one call at a time per worker.
     void add(std::size_t worker, std::span<const Code> codes) { addEach(worker, codes); }
-    /// Adds codes that lie between two.
+    /// Adds codes that all lie in lowest .. highest.
     template <typename T>
     void add(std::size_t worker, std::span<const T> codes, Code lowest, Code highest) {
         if (lowest == highest) return add(worker, lowest, codes.size());
@@ -41,7 +39,7 @@ class CodeCounts {
         Counts& counts = countsOf(worker, codes.size());
         for (std::size_t n = 0; n < numbers; ++n) counts.few[lowest + n][0] += few[n];
     }
-    /// Adds the voxels that a volume has of a block, and returns the range of their codes.
+    /// Adds the voxels of a block that lie inside of the volume, and returns their range of codes.
     /// @param codes  in leaf order
     std::pair<Code, Code> addBlock(std::size_t worker, const glm::ivec3& size,
                                    std::span<const Code, 512> codes) {
@@ -72,7 +70,7 @@ class CodeCounts {
             counts.many[code] += times;
         }
     }
-    /// Returns the sums, [kCodeCount], and leaves none.
+    /// Returns the sums, [kCodeCount], and clears the counts.
     std::vector<std::uint64_t> take() {
         std::vector<std::uint64_t> sum(kCodeCount);
         std::erase_if(counts_, [](const Counts& counts) { return counts.few.empty(); });
@@ -89,20 +87,20 @@ class CodeCounts {
     }
 
   private:
-    // Neighbours are often alike, and who adds to what was just written waits for it.
+    // Neighbours are often equal. Several lanes avoid adding to a number that was just written.
     static constexpr std::size_t kLanes = 4;
-    // Apart from those of others, who write at the same time.
+    // Aligned so that workers do not write to the same cache line.
     struct alignas(64) Counts {
         std::vector<std::array<std::uint32_t, kLanes>> few;  // [kCodeCount]
-        std::uint64_t inFew = 0;                             // of all codes together
-        std::vector<std::uint64_t> many;                     // likewise, or empty
+        std::uint64_t inFew = 0;                             // sum of `few`
+        std::vector<std::uint64_t> many;                     // [kCodeCount], or empty
 
         std::uint64_t of(std::size_t code) const {
             std::uint64_t sum = many.empty() ? 0 : many[code];
             for (const std::uint32_t lane : few[code]) sum += lane;
             return sum;
         }
-        // Lest a lane overflows.
+        // Moves `few` into `many` before a 32-bit lane overflows.
         void takeOver() {
             std::vector<std::uint64_t> all(kCodeCount);
             for (std::size_t code = 0; code < all.size(); ++code) all[code] = of(code);
@@ -120,7 +118,7 @@ class CodeCounts {
         for (const T code : codes) ++counts.few[code][0];
     }
 
-    // Made by who fills it, where it is wanted.
+    // Each worker allocates its own counts on first use.
     Counts& countsOf(std::size_t worker, std::size_t codes) {
         Counts& counts = counts_[worker];
         if (counts.few.empty()) counts.few.resize(kCodeCount);
@@ -135,16 +133,15 @@ class CodeCounts {
     std::vector<Counts> counts_;
 };
 
-/// Returns how many active voxels have each code, [65536]. Multi-threaded.
+/// Counts the active voxels per code, [65536]. Multi-threaded.
 std::vector<std::uint64_t> histogramOf(const CodeTree::Tree& tree);
 
-/// Returns the histogram of a volume before it was cut: what is cut off counts as well, so that
-/// colours do not change by cutting.
+/// Returns the histogram before any cut, so that cutting does not change colours.
 inline std::vector<std::uint64_t> uncutHistogram(const Volume& volume) {
-    return volume.uncut ? histogramOf(volume.uncut->tree()) : volume.histogram;
+    return volume.uncut() ? histogramOf(volume.uncut()->tree()) : volume.histogram();
 }
 
-/// Returns the box of the active voxels, whose indices must fit.
+/// Returns the box of the active voxels, whose indices must fit into 32 bits.
 IndexBox activeBox(const CodeTree::Tree& tree);
 
 }  // namespace deltasplat

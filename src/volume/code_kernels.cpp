@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inner loops of describing blocks of codes, compiled once for each SIMD level.
+// Inner loops that describe blocks of codes, compiled once per SIMD level.
 #include "volume/code_kernels.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Puts all lanes of a vector together, down to eight by vectors.
+// Combines all lanes of a vector, first by vectors of eight lanes.
 template <typename T, class Combine, class CombineTwo>
 HWY_INLINE T fold(hn::Vec<hn::ScalableTag<T>> vector, const Combine& combine,
                   const CombineTwo& combineTwo) {
@@ -69,8 +69,7 @@ std::pair<Code, Code> rangeOfBytesKernel(std::span<const std::uint8_t> codes) {
     return rangeOf(codes);
 }
 
-// Each number takes a comparison of every vector, so that up to as many as a vector has lanes they
-// are fewer than steps of counting one by one.
+// Each number costs a comparison per vector: faster than counting while numbers <= lanes.
 template <typename T>
 HWY_INLINE std::size_t countFew(std::span<const T> codes, Code lowest, Code highest,
                                 std::uint32_t* counts) {

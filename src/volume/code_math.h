@@ -10,27 +10,24 @@
 
 namespace deltasplat {
 
-/// Returns a number that is in the order of values, of a binary16, 32 or 64 pattern: negative ones
-/// run backwards.
+/// Maps a binary16, 32 or 64 to a number that sorts like its value; negative ones run backwards.
 template <typename Bits>
 Bits orderOfBits(Bits bits) {
     constexpr auto kSign = Bits(Bits{1} << (8 * sizeof(Bits) - 1));
     return (bits & kSign) != 0 ? Bits(~bits) : Bits(bits | kSign);
 }
 
-/// Returns the pattern of such a number; the inverse of orderOfBits.
+/// Inverse of orderOfBits.
 template <typename Bits>
 Bits bitsOfOrder(Bits order) {
     constexpr auto kSign = Bits(Bits{1} << (8 * sizeof(Bits) - 1));
     return (order & kSign) != 0 ? Bits(order ^ kSign) : Bits(~order);
 }
 
-/// Returns the code of a binary16 pattern.
 inline Code codeOfHalfBits(std::uint16_t bits) {
     return orderOfBits(bits);
 }
 
-/// Returns the binary16 pattern of a code; the inverse of codeOfHalfBits.
 inline std::uint16_t halfBitsOfCode(Code code) {
     return bitsOfOrder(code);
 }
@@ -44,7 +41,7 @@ inline Code linearCode(double value, double offset, double step) {
     return rung >= kCodeCount ? Code(kCodeCount - 1) : Code(rung);
 }
 
-/// Returns what every code stands for, [kCodeCount].
+/// Returns the value of every code, [kCodeCount].
 inline std::vector<double> valuesOfCodes(const CodeBook& book) {
     std::vector<double> values(kCodeCount);
     for (int code = 0; code < kCodeCount; ++code)
@@ -52,10 +49,10 @@ inline std::vector<double> valuesOfCodes(const CodeBook& book) {
     return values;
 }
 
-/// What a voxel looks like: an index into the colours of a class table; 0 = empty.
+/// The look of a voxel: an index into the colours of a class table; 0 = empty.
 using ClassIndex = std::uint16_t;
 
-/// Returns how many voxels a box has; of boxes that have more than 64 bits hold, 2^63.
+/// Returns the number of voxels in a box; 2^63 if the number does not fit into 64 bits.
 inline std::uint64_t voxelsOf(const IndexBox& box) {
     const glm::ivec3 d = box.dims();
     constexpr double kMost = 0x1p63;

@@ -15,13 +15,12 @@ namespace {
 
 using Lower = CodeTree::Tree::RootNodeType::ChildNodeType::ChildNodeType;
 
-// The part [begin, end) of a list.
 struct Part {
     std::size_t begin = 0;
     std::size_t end = 0;
 };
 
-// A node of 128^3 voxels that is made, and what goes into it.
+// A new node of 128^3 voxels and its contents.
 struct LowerParts {
     Part leaves;
     Part tiles;
@@ -34,8 +33,7 @@ openvdb::Coord lowerOrigin(const openvdb::Coord& place) {
     return place & ~(Lower::DIM - 1);
 }
 
-// Notes which parts of a list go into which nodes: originOf(i) is where an item lies, nothing if it
-// goes into none.
+// Notes which part of a list goes into which node. originOf(i): place of item i, or nothing.
 template <typename OriginOf>
 void addParts(std::size_t count, const OriginOf& originOf, Part LowerParts::*which,
               LowerMap& nodes) {
@@ -80,7 +78,7 @@ std::vector<CodeTree::Leaf*> addNodes(const std::vector<openvdb::Coord>& leaves,
                      (made.leaves.end - made.leaves.begin) * sizeof(CodeTree::Leaf));
         made.node = std::make_unique<Lower>(origin, Code{0}, /*active=*/false);
         for (std::size_t i = made.leaves.begin; i < made.leaves.end; ++i) {
-            // The node's from here on.
+            // The node owns the leaf from here on.
             added[i] = new CodeTree::Leaf(openvdb::PartialCreate(), leaves[i]);
             made.node->addChild(added[i]);
         }

@@ -11,15 +11,14 @@
 
 namespace deltasplat {
 
-/// Where an active tile lies.
 struct TilePlace {
     openvdb::Coord origin;
-    openvdb::Index level;  ///< 1: of 8^3 voxels, 2: of 128^3, 3: of 4096^3
+    openvdb::Index level;  ///< 1: 8^3 voxels, 2: 128^3, 3: 4096^3
 
     std::uint64_t voxels() const { return level == 1 ? 512 : level == 2 ? 1u << 21 : 1ull << 36; }
 };
 
-/// Hangs a node of 128^3 voxels into a tree that has none there.
+/// Adds a node of 128^3 voxels to a tree that has none at its place.
 template <typename Tree>
 void hangIn(std::unique_ptr<typename Tree::RootNodeType::ChildNodeType::ChildNodeType> node,
             Tree& tree) {
@@ -32,13 +31,11 @@ void hangIn(std::unique_ptr<typename Tree::RootNodeType::ChildNodeType::ChildNod
     upper->addChild(node.release());
 }
 
-/// Adds leaves without room for codes, whose voxels are inactive, and active tiles, on all threads.
-/// @param leaves  where each leaf's first voxel lies; those of one node of 128^3 voxels follow each
-///                other
-/// @param tiles   likewise
+/// Adds leaves with inactive voxels and no room for codes, and active tiles, on all threads.
+/// @param leaves  places of first voxels; leaves of one 128^3 node are neighbours in the list
+/// @param tiles   places of the tiles, in the same order
 /// @param codes   of the tiles
 /// @param tree    empty
-/// @return the leaves
 std::vector<CodeTree::Leaf*> addNodes(const std::vector<openvdb::Coord>& leaves,
                                       const std::vector<TilePlace>& tiles,
                                       const std::vector<Code>& codes, CodeTree::Tree& tree);

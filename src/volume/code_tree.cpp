@@ -50,7 +50,7 @@ namespace {
 std::vector<CodeLeaf> listLeaves(const CodeTree::Tree& tree) {
     std::vector<const CodeTree::Leaf*> leaves;
     tree.getNodes(leaves);
-    // Leaves without active voxels may lie outside of the box of those.
+    // Leaves without active voxels may lie outside of the active box.
     std::erase_if(leaves, [](const CodeTree::Leaf* leaf) { return leaf->isEmpty(); });
     std::vector<CodeLeaf> described(leaves.size());
     parallelForChunks(leaves.size(), [&](std::size_t begin, std::size_t end) {
@@ -59,13 +59,13 @@ std::vector<CodeLeaf> listLeaves(const CodeTree::Tree& tree) {
     return described;
 }
 
-// A block, and where its first voxel lies.
+// A block and the place of its first voxel.
 struct PlacedBlock {
     openvdb::Coord origin;
     const SlotBlock* block;
 };
 
-// Blocks of one node one after the other.
+// Sorts by node, so that blocks of one node are neighbours.
 bool isBefore(const PlacedBlock& a, const PlacedBlock& b) {
     constexpr int kNode = CodeTree::Tree::RootNodeType::ChildNodeType::ChildNodeType::DIM;
     const openvdb::Coord nodeA = a.origin & ~(kNode - 1);
@@ -73,7 +73,7 @@ bool isBefore(const PlacedBlock& a, const PlacedBlock& b) {
     return nodeA != nodeB ? nodeA < nodeB : a.origin < b.origin;
 }
 
-// @param leaf  without room
+// @param leaf  without room for codes
 void fillLeaf(const SlotBlock& block, int sliceAxis, CodeTree::Leaf& leaf) {
     expectPieces(CodeTree::Leaf::SIZE * sizeof(Code));
     leaf.allocate();
@@ -90,9 +90,9 @@ void fillLeaf(const SlotBlock& block, int sliceAxis, CodeTree::Leaf& leaf) {
         leaf.getValueMask().getWord<std::uint64_t>(x) = mask[x];
 }
 
-// Returns the leaves.
+// Returns the tree's leaves.
 std::vector<CodeLeaf> fillTree(const SlotBlocks& blocks, CodeTree::Tree& tree) {
-    // A leaf's codes and its mask, and what is kept of it beside them.
+    // A leaf with its mask, its codes and its CodeLeaf.
     constexpr double kLeafBytes = sizeof(CodeTree::Leaf) + 512 * sizeof(Code) + 64;
     requireMemory("codes of a delta grid that is not seen along its slices",
                   kLeafBytes * double(blocks.blocks().size()));
@@ -126,7 +126,6 @@ std::vector<CodeLeaf> fillTree(const SlotBlocks& blocks, CodeTree::Tree& tree) {
     return described;
 }
 
-// Whether a leaf has no codes yet.
 bool lacks(const CodeTree::Leaf& leaf) {
     return leaf.buffer().empty();
 }
@@ -150,14 +149,14 @@ const CodeTree::Tree& CodeTree::tree() const {
 const CodeTree::Tree& CodeTree::nodes() const {
     if (!blocks_ || hasTree_.load(std::memory_order_acquire)) return tree_;
     const std::lock_guard lock(mutex_);
-    // Work taken on while waiting here might want the same tree.
+    // A task that this thread runs while it waits might want the same tree.
     if (!hasTree_.load(std::memory_order_relaxed)) {
         isolated([&] {
             try {
                 leaves_.store(
                     std::make_shared<const std::vector<CodeLeaf>>(fillTree(*blocks_, tree_)));
             } catch (...) {
-                // The next call fills it anew.
+                // The next call starts again.
                 tree_.clear();
                 throw;
             }
@@ -179,7 +178,7 @@ std::uint64_t CodeTree::memoryBytes() const {
 std::shared_ptr<const std::vector<CodeLeaf>> CodeTree::leaves() const {
     auto known = leaves_.load();
     if (known) return known;
-    // Two threads may do this at once; the lists are the same.
+    // Two threads may do this at once; their lists are the same.
     known = std::make_shared<const std::vector<CodeLeaf>>(listLeaves(tree()));
     leaves_.store(known);
     return known;
@@ -202,7 +201,7 @@ void CodeTree::readLeaves(std::span<const Leaf* const> leaves) const {
     const std::lock_guard lock(mutex_);
     std::vector<Leaf*> lacking;
     for (const Leaf* leaf : leaves) {
-        // The tree, whose it is, is no constant.
+        // The tree, which owns the leaf, is not const.
         if (lacks(*leaf)) lacking.push_back(const_cast<Leaf*>(leaf));
     }
     if (lacking.empty()) return;
@@ -211,7 +210,7 @@ void CodeTree::readLeaves(std::span<const Leaf* const> leaves) const {
         try {
             reader_->read(lacking);
         } catch (...) {
-            // What has come may be of another file than the rest.
+            // Codes read so far may come from another file than the rest.
             for (Leaf* leaf : lacking) dropCodes(*leaf);
             throw;
         }

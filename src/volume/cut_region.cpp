@@ -14,7 +14,7 @@
 namespace deltasplat {
 
 IndexPlane indexPlane(const ClipPlane& plane, const glm::dmat4& worldFromIndex) {
-    // However long the normal is, no square of it overflows.
+    // Scaled so that squares cannot overflow, however long the normal is.
     const glm::dvec3 size = glm::abs(plane.normalWorld);
     const glm::dvec3 normal = plane.normalWorld / std::max({size.x, size.y, size.z});
     const auto along = [&](const glm::dvec4& step) { return glm::dot(normal, glm::dvec3(step)); };
@@ -38,7 +38,7 @@ bool keeps(const IndexPlane& plane, const glm::dvec3& posIndex) {
     return plane.distanceAt(posIndex) >= -kCutRounding;
 }
 
-// Distances are monotonic in each index, so that two corners tell of all voxels.
+// Distances are monotonic in each index, so two corners decide for all voxels.
 Kept keptOfPlane(const IndexPlane& plane, const IndexBox& voxels) {
     glm::dvec3 least, most;
     for (int axis = 0; axis < 3; ++axis) {
@@ -59,7 +59,7 @@ IndexBox sharedBox(const IndexBox& a, const IndexBox& b) {
 Kept CutRegion::keptOf(const IndexBox& voxels) const {
     Kept kept = keptOfBox(box, voxels);
     for (const IndexPlane& plane : planes) kept = std::min(kept, keptOfPlane(plane, voxels));
-    // What lies within its box only its voxels tell.
+    // Inside of the mask's box only its voxels decide.
     if (mask && kept != Kept::kNone) kept = std::min(Kept::kSome, keptOfBox(mask->box(), voxels));
     return kept;
 }
@@ -78,16 +78,15 @@ void CutRegion::keepIn(const openvdb::Coord& origin, CodeTree::Leaf::NodeMaskTyp
 
 namespace {
 
-// Beyond all indices that volumes have.
+// Beyond the indices of all volumes.
 constexpr double kFar = 1 << 30;
 
-// Half way between two, rounding decides nothing: it is the latter.
+// Takes the latter index half way between two, so that rounding errors decide nothing.
 int nearestIndex(double place) {
     return int(std::floor(std::clamp(place, -kFar, kFar) + 0.5 + kCutRounding));
 }
 
-// How many whole voxels each of a volume's lies from the one of the mask at the same place, as
-// exactly as files state places.
+// Returns the whole shift from volume to mask indices, if places match as exactly as files state.
 std::optional<openvdb::Coord> wholeShift(const glm::dmat4& maskFromVolume, const IndexBox& box) {
     constexpr double kNear = 1e-3;
     const glm::dvec3 first = box.min;
@@ -102,7 +101,7 @@ std::optional<openvdb::Coord> wholeShift(const glm::dmat4& maskFromVolume, const
     return openvdb::Coord(int(shift.x), int(shift.y), int(shift.z));
 }
 
-// The box of a mask, and a voxel around it, in the indices of a volume.
+// Returns the mask's box, grown by one voxel, in the volume's indices.
 IndexBox reachOf(const IndexBox& maskBox, const glm::dmat4& volumeFromMask) {
     if (maskBox.empty()) return {};
     const WorldBox reach =
@@ -114,13 +113,13 @@ IndexBox reachOf(const IndexBox& maskBox, const glm::dmat4& volumeFromMask) {
 
 }  // namespace
 
-MaskVoxels::MaskVoxels(const Volume& mask, const Volume& volume)
-    : tree_(mask.codes->tree()),
-      maskFromVolume_(glm::inverse(mask.worldFromIndex) * volume.worldFromIndex),
+MaskVoxels::MaskVoxels(const Volume& mask, const VolumeData& volume)
+    : tree_(mask.codes()->tree()),
+      maskFromVolume_(glm::inverse(mask.worldFromIndex()) * volume.worldFromIndex),
       shift_(wholeShift(maskFromVolume_, volume.box)),
-      box_(reachOf(mask.box, glm::inverse(volume.worldFromIndex) * mask.worldFromIndex)) {
+      box_(reachOf(mask.box(), glm::inverse(volume.worldFromIndex) * mask.worldFromIndex())) {
     for (int code = 0; code < kCodeCount; ++code)
-        keeps_[std::size_t(code)] = mask.codeBook.valueOf(Code(code)) != 0;
+        keeps_[std::size_t(code)] = mask.codeBook().valueOf(Code(code)) != 0;
 }
 
 openvdb::Coord MaskVoxels::placeOf(const openvdb::Coord& voxel) const {

@@ -22,8 +22,7 @@ namespace deltasplat {
 
 namespace {
 
-// Switches off what is not active in the codes, and gives it the background's value; tiles keep
-// theirs, which nothing reads.
+// Gives voxels that are inactive in the codes the background's value. Tiles' values are never read.
 template <typename Tree>
 void dropVoxels(Tree& tree, const CodeTree::Tree& kept) {
     const openvdb::MaskTree before(tree, false, true, openvdb::TopologyCopy());
@@ -42,7 +41,7 @@ void dropVoxels(Tree& tree, const CodeTree::Tree& kept) {
 
 }  // namespace
 
-void cutSource(Volume& volume) {
+void cutSource(VolumeData& volume) {
     SourceGrid cut{volume.source->grid, volume.source->fileMetadata};
     requireMemory("cut", double(cut.grid.tree->memUsage()));
     cut.grid.tree = cut.grid.tree->copy();
@@ -73,7 +72,7 @@ std::string rangeText(Number low, Number high) {
            (high == most ? "" : numberText(double(high)));
 }
 
-// "0:255,0:255,:127": what has no end says none.
+// "0:255,0:255,:127": an open end has no number.
 template <typename Box>
 std::string boxText(const Box& box) {
     return rangeText(box.min.x, box.max.x) + "," + rangeText(box.min.y, box.max.y) + "," +
@@ -101,7 +100,7 @@ void checkCut(const Cut& cut) {
     if (cut.cropWorld) requireWorldBox(*cut.cropWorld);
 }
 
-// What crops by index leave of a box.
+// Returns the part of a box that crops by index leave.
 IndexBox croppedBox(const Cut& cut, const IndexBox& box) {
     IndexBox left = box;
     if (cut.cropIndex) {
@@ -125,7 +124,7 @@ IndexBox croppedBox(const Cut& cut, const IndexBox& box) {
     return left;
 }
 
-// The sides of a box in the world as planes; what has no end has no side.
+// The sides of a world box as planes. An infinite end has no side.
 std::vector<IndexPlane> sidesOf(const WorldBox& box, const glm::dmat4& worldFromIndex) {
     std::vector<IndexPlane> sides;
     for (int axis = 0; axis < 3; ++axis) {
@@ -140,12 +139,12 @@ std::vector<IndexPlane> sidesOf(const WorldBox& box, const glm::dmat4& worldFrom
     return sides;
 }
 
-bool keep(const CutRegion& region, Volume& volume) {
+bool keep(const CutRegion& region, VolumeData& volume) {
     volume.codes = keepVoxels(*volume.codes, region);
     return !volume.codes->tree().empty();
 }
 
-void crop(const Cut& cut, Volume& volume) {
+void crop(const Cut& cut, VolumeData& volume) {
     const IndexBox all = volume.box;
     CutRegion region;
     region.box = volume.box = croppedBox(cut, all);
@@ -162,7 +161,7 @@ void crop(const Cut& cut, Volume& volume) {
     if (cut.cropWorld || volume.hasBackground) volume.box = activeBox(volume.codes->tree());
 }
 
-void clip(const Cut& cut, Volume& volume) {
+void clip(const Cut& cut, VolumeData& volume) {
     CutRegion region;
     for (const ClipPlane& plane : cut.clipPlanes)
         region.planes.push_back(indexPlane(plane, volume.worldFromIndex));
@@ -172,14 +171,16 @@ void clip(const Cut& cut, Volume& volume) {
                boxText(worldBox(volume.box, volume.worldFromIndex)));
 }
 
-// The same mask in the volume's unit of length, if both are known.
-Volume inUnitOf(const Volume& volume, Volume mask) {
-    const double own = millimetresIn(mask.lengthUnit), wanted = millimetresIn(volume.lengthUnit);
-    if (own > 0 && wanted > 0 && own != wanted) scaleLengths(mask.worldFromIndex, own / wanted);
-    return mask;
+// Returns the mask in the volume's unit of length, if both units are known.
+Volume inUnitOf(const VolumeData& volume, const Volume& mask) {
+    const double own = millimetresIn(mask.lengthUnit()), wanted = millimetresIn(volume.lengthUnit);
+    if (!(own > 0 && wanted > 0 && own != wanted)) return mask;
+    glm::dmat4 scaled = mask.worldFromIndex();
+    scaleLengths(scaled, own / wanted);
+    return mask.withPlace(scaled, mask.space(), volume.lengthUnit);
 }
 
-void applyMask(const Volume& given, const Listener& listener, Volume& volume) {
+void applyMask(const Volume& given, const Listener& listener, VolumeData& volume) {
     const Volume mask = inUnitOf(volume, given);
     const MaskVoxels voxels(mask, volume);
     if (voxels.resamples()) {
@@ -191,21 +192,20 @@ void applyMask(const Volume& given, const Listener& listener, Volume& volume) {
     region.mask = &voxels;
     if (keep(region, volume)) return;
     refuse("`mask`",
-           "a mask in the world box " + boxText(worldBox(mask.box, mask.worldFromIndex)) +
+           "a mask in the world box " + boxText(worldBox(mask.box(), mask.worldFromIndex())) +
                " that leaves nothing",
            "one that keeps some voxel of those in " +
                boxText(worldBox(volume.box, volume.worldFromIndex)),
            ErrorCode::kInput);
 }
 
-// Finds out which values are left of a volume.
-void count(const Volume& whole, Volume& left) {
+void count(const Volume& whole, VolumeData& left) {
     left.histogram = histogramOf(left.codes->tree());
     summarize(left);
     if (!left.codeBook.isExact()) {
-        // Codes may be a little outside of the values.
-        left.valueMin = std::clamp(left.valueMin, whole.valueMin, whole.valueMax);
-        left.valueMax = std::clamp(left.valueMax, whole.valueMin, whole.valueMax);
+        // The values of codes may exceed the range of the source's values.
+        left.valueMin = std::clamp(left.valueMin, whole.valueMin(), whole.valueMax());
+        left.valueMax = std::clamp(left.valueMax, whole.valueMin(), whole.valueMax());
     }
     if (left.source) cutSource(left);
 }
@@ -215,13 +215,13 @@ void count(const Volume& whole, Volume& left) {
 Volume cutVolume(const Volume& volume, const Cut& cut, const Listener& listener) {
     checkCut(cut);
     if (cut.empty() || volume.empty()) return volume;
-    Volume left = volume;
-    left.uncut = volume.uncut ? volume.uncut : volume.codes;
+    VolumeData left = volume.data();
+    if (!left.uncut) left.uncut = left.codes;
     if (cut.crops()) crop(cut, left);
     if (!cut.clipPlanes.empty()) clip(cut, left);
     if (cut.mask) applyMask(*cut.mask, listener, left);
     count(volume, left);
-    return left;
+    return Volume(std::move(left));
 }
 
 }  // namespace deltasplat

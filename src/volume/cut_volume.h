@@ -5,9 +5,9 @@
 
 namespace deltasplat {
 
-/// Gives a volume whose codes were cut a source in which no more is active than in those, and the
-/// smallest and largest value that is left in it.
-/// @throw Error(kFailed) if it does not fit into memory
-void cutSource(Volume& volume);
+/// Cuts the source of a volume whose codes were cut: no voxel stays active that is inactive in the
+/// codes. If the code book is not exact, also updates the smallest and largest value.
+/// @throw Error(kFailed) if memory is too small
+void cutSource(VolumeData& volume);
 
 }  // namespace deltasplat

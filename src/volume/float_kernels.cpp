@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What floats have in common, and which codes they get, compiled once for each SIMD level.
+// Facts and codes of floats, compiled once per SIMD level.
 #include "volume/float_kernels.h"
 
 #include <algorithm>
@@ -17,8 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Calls use(first of so many values, where their codes go) for whole vectors; what is left over is
-// filled up with the first value, and its codes go nowhere.
+// Calls use(values, codes) per vector. The last is padded with the first value, codes dropped.
 template <std::size_t kLanes, typename T, typename Use>
 HWY_INLINE void forVectors(std::span<const T> values, Code* codes, const Use& use) {
     std::size_t n = 0;
@@ -40,7 +39,7 @@ FloatFacts factsOfKernel(std::span<const float> values) {
     auto min = hn::Set(tag, values[0]);
     auto max = min;
     auto least = none;
-    auto most = hn::Zero(bitsTag);   // of magnitudes' patterns
+    auto most = hn::Zero(bitsTag);   // largest pattern of a magnitude
     auto wrong = hn::Zero(bitsTag);  // bits that no half has
     auto isHalf = hn::Eq(none, none);
     auto isWhole = isHalf;
@@ -53,14 +52,13 @@ FloatFacts factsOfKernel(std::span<const float> values) {
         max = hn::Max(max, value);
         least = hn::Min(least, hn::IfThenElse(isZero, none, magnitude));
         most = hn::Max(most, pattern);
-        // Halves have 10 bits behind the point, and below 2^-14 are multiples of 2^-24: that is
-        // what is left of a number next to 0.5.
+        // Halves have 10 mantissa bits; below 2^-14, multiples of 2^-24, the precision beside 0.5.
         wrong = hn::Or(wrong, hn::And(pattern, hn::Set(bitsTag, (1 << 13) - 1)));
         const auto half = hn::Set(tag, 0.5f);
         const auto kept = hn::Sub(hn::Add(magnitude, half), half);
         const auto isSmall = hn::Lt(magnitude, hn::Set(tag, 0x1p-14f));
         isHalf = hn::And(isHalf, hn::Or(hn::Not(isSmall), hn::Eq(kept, magnitude)));
-        // From 2^23 on all floats are whole; -0 is none that an integer can be.
+        // From 2^23 on all floats are whole. -0 is no integer.
         const auto small = hn::IfThenElseZero(hn::Lt(magnitude, hn::Set(tag, 0x1p23f)), value);
         const auto whole = hn::ConvertTo(tag, hn::ConvertTo(bitsTag, small));
         const auto isNegativeZero = hn::And(
@@ -83,7 +81,7 @@ FloatFacts factsOfKernel(std::span<const float> values) {
     facts.isFinite = largest < kInfinity;
     facts.isHalf = !hasWrong && largest <= kLargestHalf && hn::AllTrue(tag, isHalf);
     facts.isWhole = hn::AllTrue(tag, isWhole);
-    // Which zero is the least is not the same at every level: -0 + 0 is 0.
+    // The sign of a zero extreme differs between levels. Adding 0 makes it positive.
     facts.min = *std::min_element(lanes[0], lanes[0] + kLanes) + 0.0f;
     facts.max = *std::max_element(lanes[1], lanes[1] + kLanes) + 0.0f;
     facts.least = *std::min_element(lanes[2], lanes[2] + kLanes);
@@ -99,7 +97,7 @@ void codesOfHalvesKernel(std::span<const float> values, Code* codes) {
         values, codes, [&](const float* from, Code* to) HWY_ATTR {
             const auto value = hn::LoadU(tag, from);
             const auto magnitude = hn::Abs(value);
-            // Exponents of floats are 112 more than those of halves; below 2^-14 halves have steps.
+            // The exponent bias of floats is 112 larger. Below 2^-14 halves have equal steps.
             const auto normal = hn::Sub(hn::ShiftRight<13>(hn::BitCast(bitsTag, magnitude)),
                                         hn::Set(bitsTag, 112 << 10));
             const auto steps = hn::ConvertTo(bitsTag, hn::Mul(magnitude, hn::Set(tag, 0x1p24f)));

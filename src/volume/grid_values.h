@@ -29,7 +29,7 @@ bool isFinite(T value) {
     return true;
 }
 
-/// Which voxels of a leaf are active. [x]: bit 8 y + z
+/// The active voxels of a leaf. [x]: bit 8 y + z
 using LeafMask = std::array<std::uint64_t, 8>;
 
 template <typename Leaf>
@@ -40,10 +40,9 @@ LeafMask maskOf(const Leaf& leaf) {
     return mask;
 }
 
-/// What the active values of a grid hold.
 struct GridScan {
     ValueCensus census;           ///< of the finite values
-    std::uint64_t nonFinite = 0;  ///< voxels
+    std::uint64_t nonFinite = 0;  ///< number of voxels
     openvdb::Coord first;         ///< the non-finite voxel with the smallest z, then y, then x
 
     void addNonFinite(const openvdb::Coord& place, std::uint64_t voxels) {
@@ -51,7 +50,7 @@ struct GridScan {
         nonFinite += voxels;
     }
     /// @param origin  of a leaf
-    /// @param values  of its active voxels, some of them not finite
+    /// @param values  of its active voxels, of which some are not finite
     template <typename T>
     void addOneByOne(const openvdb::Coord& origin, const LeafMask& mask,
                      std::span<const T> values) {
@@ -77,10 +76,9 @@ struct GridScan {
     }
 };
 
-/// How many leaves one thread takes at a time.
 inline constexpr std::size_t kLeafRun = 128;
 
-/// Calls body(run, begin, end) for runs of leaf numbers that together are 0..count, on all threads.
+/// Calls body(run, begin, end) on all threads, for runs that together cover leaves 0 to count - 1.
 template <typename Body>
 void forLeafRuns(std::size_t count, const Body& body) {
     parallelFor((count + kLeafRun - 1) / kLeafRun, [&](std::size_t run) {
@@ -88,8 +86,7 @@ void forLeafRuns(std::size_t count, const Body& body) {
     });
 }
 
-/// The same on so many workers, as body(worker, begin, end): of one worker, one call after the
-/// other.
+/// Calls body(worker, begin, end) on `workers` workers. Calls of one worker never overlap.
 template <typename Body>
 void forLeafRuns(std::size_t count, std::size_t workers, const Body& body) {
     const std::size_t runs = (count + kLeafRun - 1) / kLeafRun;
@@ -100,7 +97,7 @@ void forLeafRuns(std::size_t count, std::size_t workers, const Body& body) {
     });
 }
 
-/// Calls use(n, value) for the active voxels of a leaf, n being their places in it.
+/// Calls use(n, value) for the active voxels of a leaf. n is the place in the leaf.
 template <typename Leaf, typename Use>
 void forActiveVoxels(const Leaf& leaf, const Use& use) {
     if constexpr (std::is_same_v<typename Leaf::ValueType, bool>) {
@@ -117,12 +114,10 @@ void forActiveVoxels(const Leaf& leaf, const Use& use) {
     }
 }
 
-/// Room for the values of a leaf's active voxels.
 template <typename Leaf>
 using LeafRoom = std::array<typename Leaf::ValueType, Leaf::SIZE>;
 
-/// Returns the values of a leaf's active voxels, in the order of their places: the leaf's own where
-/// all are active, otherwise a copy in `room`.
+/// Returns a leaf's active values in order of place: the leaf's own, or a copy in `room`.
 template <typename Leaf>
 std::span<const typename Leaf::ValueType> activeValues(const Leaf& leaf, LeafRoom<Leaf>& room) {
     if constexpr (!std::is_same_v<typename Leaf::ValueType, bool>) {
@@ -133,15 +128,15 @@ std::span<const typename Leaf::ValueType> activeValues(const Leaf& leaf, LeafRoo
     return {room.data(), count};
 }
 
-/// Calls use(iterator) for every active tile of `tree`, of any level.
+/// Calls use(iterator) for every active tile of `tree`, at any level.
 template <typename Tree, typename Use>
 void forActiveTiles(Tree& tree, const Use& use) {
-    auto tile = tree.beginValueOn();  // constant where the tree is
+    auto tile = tree.beginValueOn();  // const if `tree` is const
     tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
     for (; tile; ++tile) use(tile);
 }
 
-/// The active nodes of a tree: its leaves with what their active voxels hold, and active tiles.
+/// The active nodes of a tree: leaves with the values of their active voxels, and active tiles.
 template <typename Tree>
 class TreeLeaves {
   public:
@@ -151,7 +146,7 @@ class TreeLeaves {
     explicit TreeLeaves(const Tree& tree) : tree_(tree) { tree.getNodes(leaves_); }
 
     Value background() const { return tree_.background(); }
-    /// Calls use(places, values) for the active tiles, some at a time.
+    /// Calls use(places, values) for groups of active tiles.
     template <typename Use>
     void forTileRuns(const Use& use) const {
         constexpr std::size_t kMost = 4096;
@@ -170,19 +165,18 @@ class TreeLeaves {
         if (!places.empty()) flush();
     }
     std::size_t count() const { return leaves_.size(); }
-    /// Returns where a leaf's first voxel lies.
     openvdb::Coord place(std::size_t i) const { return leaves_[i]->origin(); }
-    /// @param room  of values(), which were asked for before
+    /// @param room  after a call of values() for this leaf
     LeafMask mask(std::size_t i, const Room&) const { return maskOf(*leaves_[i]); }
-    /// Returns the values of a leaf's active voxels, in the order of their places. Thread-safe.
-    /// @param room  may be written to
+    /// Returns the values of a leaf's active voxels in the order of their places. Thread-safe.
+    /// @param room  may be overwritten
     std::span<const typename Tree::ValueType> values(std::size_t i, Room& room) const {
         return activeValues(*leaves_[i], room);
     }
-    /// Whether values of any leaf cannot be told.
+    /// Whether the values of any leaf could not be read.
     bool areDamaged() const { return false; }
-    /// Returns a tree for codes of these leaves, with those of tiles.
-    /// @param filled  becomes its leaves
+    /// Returns a tree for the codes of these leaves. Tiles have their codes already.
+    /// @param filled  receives the leaves of the returned tree
     std::shared_ptr<CodeTree> makeCodes(const std::vector<Code>& tileCodes,
                                         std::vector<CodeTree::Leaf*>& filled) const {
         auto codes =
@@ -192,7 +186,7 @@ class TreeLeaves {
         codes->tree().getNodes(filled);
         return codes;
     }
-    /// Makes room for codes in a leaf of that tree, those whose values were asked for last.
+    /// Makes room for codes in a leaf of the returned tree, after a call of values() for this leaf.
     void makeRoom(const Room&, CodeTree::Leaf&) const {}
 
   private:
@@ -200,24 +194,23 @@ class TreeLeaves {
     std::vector<const typename Tree::LeafNodeType*> leaves_;
 };
 
-/// What a scan is to find out besides the census' numbers.
+/// Optional findings of a scan, besides the numbers of the census.
 struct ScanWishes {
     bool distinct = true;  ///< different values
-    bool survey = true;    ///< where values lie
+    bool survey = true;    ///< distribution of values
 };
 
-/// What is told soon, and mostly is enough.
+/// The numbers alone: quick to find, and mostly sufficient.
 inline constexpr ScanWishes kNumbersAlone{.distinct = false, .survey = false};
 
 /// Returns what the active values of a tree hold; the result does not depend on the thread count.
-/// @param leaves  TreeLeaves, or what does the same
+/// @param leaves  TreeLeaves, or a class with the same members
 template <typename Leaves>
 GridScan scanLeaves(const Leaves& leaves, const ScanWishes& wishes) {
     GridScan whole;
     if (!wishes.distinct) whole.census.distinct.giveUp();
     whole.census.skipSurvey = !wishes.survey;
-    // Runs are put together as they are done: what each of them collects takes megabytes. The first
-    // few tell the others whether there is any use in collecting.
+    // Runs are merged early, because each takes megabytes; the first few tell whether to collect.
     constexpr std::size_t kFewRuns = 8;
     const std::size_t mostRuns = std::clamp<std::size_t>(2 * threadCount(), kFewRuns, 64);
     std::size_t runs = kFewRuns;

@@ -15,10 +15,9 @@ namespace {
 
 using Leaf = CodeTree::Leaf;
 
-// A block of 8x8x8 voxels of which some are kept.
 struct Block {
     openvdb::Coord origin;
-    const Leaf* leaf = nullptr;  // null: all have the code
+    const Leaf* leaf = nullptr;  // null: all voxels have `code`
     Code code = 0;
 };
 
@@ -29,7 +28,7 @@ IndexBox boxAt(const openvdb::Coord& origin, int width) {
     return {first, first + (width - 1)};
 }
 
-// Puts the tiles that are kept as a whole into a tree, and lists the blocks of others.
+// Adds tiles that are kept whole to a tree, and lists the blocks of tiles that are kept in part.
 class TileSplitter {
   public:
     TileSplitter(const CutRegion& region, CodeTree::Tree& tree, std::vector<Block>& blocks)
@@ -37,7 +36,6 @@ class TileSplitter {
 
     /// @param level  of the tile in the tree: 1, 2 or 3
     void add(const openvdb::Coord& origin, int level, Code code) {
-        // How wide tiles are at each level.
         constexpr int kWidths[] = {1, 8, 128, 4096};
         const Kept kept = region_.keptOf(boxAt(origin, kWidths[level]));
         if (kept == Kept::kNone) return;
@@ -54,7 +52,7 @@ class TileSplitter {
 
   private:
     void addBlock(const openvdb::Coord& origin, Code code) {
-        // Asked again whenever there are twice as many.
+        // Asks again whenever the list doubles.
         if (blocks_.size() == blocks_.capacity())
             requireMemory("cut", 2 * kBlockBytes * double(blocks_.size()));
         blocks_.push_back({origin, nullptr, code});
@@ -65,7 +63,7 @@ class TileSplitter {
     std::vector<Block>& blocks_;
 };
 
-// Returns what is kept of a block; null: nothing.
+// Returns a block's kept voxels, or null.
 std::unique_ptr<Leaf> keptLeaf(const Block& block, const CutRegion& region) {
     Leaf::NodeMaskType voxels(true);
     if (block.leaf) voxels = block.leaf->valueMask();

@@ -8,9 +8,8 @@
 
 namespace deltasplat {
 
-/// Returns a tree of the active voxels that lie in the region. Tiles are split where it ends.
-/// Multi-threaded.
-/// @throw Error(kFailed) if it does not fit into memory
+/// Returns a tree of the active voxels in the region; splits tiles at its border. Multi-threaded.
+/// @throw Error(kFailed) if memory is too small
 std::shared_ptr<CodeTree> keepVoxels(const CodeTree& codes, const CutRegion& region);
 
 }  // namespace deltasplat

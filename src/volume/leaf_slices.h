@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenVDB's 8x8x8 blocks as they lie along a slice axis.
+// OpenVDB's 8x8x8 blocks in the order of a slice axis.
 #pragma once
 
 #include <openvdb/math/Coord.h>
@@ -12,7 +12,7 @@
 
 namespace deltasplat {
 
-/// How far apart neighbours along x, y and z lie in a leaf's buffer.
+/// Distances of neighbours along x, y and z in a leaf's buffer.
 inline constexpr glm::ivec3 kLeafStride{64, 8, 1};
 
 /// Returns the place of a block's first voxel.
@@ -22,8 +22,8 @@ inline openvdb::Coord blockOrigin(const glm::ivec3& position, int sliceAxis) {
     return {xyz.x, xyz.y, xyz.z};
 }
 
-/// Calls use(place, n) for the voxels of a block from `first` to `last`, slice by slice: `place` is
-/// (slice, u, v), 0..7 each, and n where the voxel lies in a leaf's buffer.
+/// Calls use(place, n) per voxel from `first` to `last`, slice by slice: (slice, u, v), 0..7 each,
+/// and the index in a leaf's buffer.
 template <typename Use>
 void forLeafVoxels(int sliceAxis, const glm::ivec3& first, const glm::ivec3& last, const Use& use) {
     const glm::ivec3 stride = toSliceOrder(kLeafStride, sliceAxis);
@@ -35,13 +35,13 @@ void forLeafVoxels(int sliceAxis, const glm::ivec3& first, const glm::ivec3& las
     }
 }
 
-/// Calls use(place, n) for all voxels of a block, slice by slice, as above.
+/// Calls use(place, n) for all voxels of a block, slice by slice.
 template <typename Use>
 void forLeafVoxels(int sliceAxis, const Use& use) {
     forLeafVoxels(sliceAxis, glm::ivec3(0), glm::ivec3(7), use);
 }
 
-/// Writes the empty slot where a leaf's voxels are inactive. kStep: as below.
+/// Writes the empty slot at a leaf's inactive voxels. kStep: as for readLeafWithSteps.
 template <int kStepX, int kStepY, int kStepZ, typename Out>
 void clearInactive(const CodeTree::Leaf& leaf, Out* out) {
     if (leaf.isDense()) return;
@@ -54,8 +54,8 @@ void clearInactive(const CodeTree::Leaf& leaf, Out* out) {
     }
 }
 
-/// Reads a leaf as readLeafSlices does. kStep: how far neighbours along x, y and z lie in `out`; it
-/// is several times as fast if the compiler knows.
+/// Reads a leaf as readLeafSlices does. kStep: distances of neighbours along x, y and z in `out`.
+/// Reading is several times as fast if the compiler knows these constants.
 template <int kStepX, int kStepY, int kStepZ, typename SlotOf, typename Out>
 void readLeafWithSteps(const CodeTree::Leaf& leaf, const SlotOf& slotOf, Out* out) {
     const Code* codes = leaf.buffer().data();
@@ -69,7 +69,6 @@ void readLeafWithSteps(const CodeTree::Leaf& leaf, const SlotOf& slotOf, Out* ou
     clearInactive<kStepX, kStepY, kStepZ>(leaf, out);
 }
 
-/// Calls use.template operator()<kStepX, kStepY, kStepZ>() with the steps of slices along an axis.
 template <typename Use>
 void withLeafSteps(int sliceAxis, const Use& use) {
     if (sliceAxis == 0) return use.template operator()<64, 8, 1>();
@@ -77,7 +76,7 @@ void withLeafSteps(int sliceAxis, const Use& use) {
     use.template operator()<8, 1, 64>();
 }
 
-/// Reads a leaf of codes: slotOf(code) where a voxel is active, otherwise empty.
+/// Reads a leaf of codes: slotOf(code) for active voxels, empty for others.
 /// @param out  [slice][u][v]
 template <typename SlotOf, typename Out>
 void readLeafSlices(const CodeTree::Leaf& leaf, int sliceAxis, const SlotOf& slotOf, Out* out) {
@@ -86,7 +85,7 @@ void readLeafSlices(const CodeTree::Leaf& leaf, int sliceAxis, const SlotOf& slo
     });
 }
 
-/// Writes the empty slot where a leaf's voxels are inactive.
+/// Writes the empty slot at a leaf's inactive voxels.
 /// @param out  [slice][u][v]
 template <typename Out>
 void clearInactiveSlices(const CodeTree::Leaf& leaf, int sliceAxis, Out* out) {
@@ -95,7 +94,6 @@ void clearInactiveSlices(const CodeTree::Leaf& leaf, int sliceAxis, Out* out) {
     });
 }
 
-/// Returns what a leaf of an OpenVDB tree takes, its values included.
 template <typename Leaf>
 constexpr double leafBytes() {
     return sizeof(Leaf) + Leaf::NUM_VALUES * sizeof(typename Leaf::ValueType);

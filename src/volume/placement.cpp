@@ -13,7 +13,7 @@
 namespace deltasplat {
 
 bool givesPlaces(const glm::dmat4& worldFromIndex) {
-    constexpr double kLeastVolume = 1e-9;  // of a voxel, as a share of its edges' product
+    constexpr double kLeastVolume = 1e-9;  // of a voxel, relative to the product of its edges
     double edges = 1;
     bool usable = glm::length(glm::dvec3(worldFromIndex[3])) <= kMostLength;
     for (int axis = 0; axis < 3; ++axis) {
@@ -52,12 +52,12 @@ void requirePlacement(const std::string& where, const std::string& what, const g
 namespace {
 
 struct Unit {
-    const char* name;  // as Volume::lengthUnit has it
+    const char* name;  // as in Volume::lengthUnit
     double millimetres;
-    std::initializer_list<std::string_view> spellings;  // others, in lower case
+    std::initializer_list<std::string_view> spellings;  // other names, in lower case
 };
 
-// The sign for micro is two characters of Unicode, and one byte of Latin-1; so is the angstrom's.
+// The micro sign is two Unicode characters and one byte of Latin-1. The same goes for the angstrom.
 const std::array<Unit, 11>& units() {
     static const std::array<Unit, 11> kUnits{{
         {"km", 1e6, {"kilometer", "kilometers", "kilometre", "kilometres"}},

@@ -6,7 +6,7 @@
 namespace deltasplat {
 
 bool SeenCone::sees(const glm::ivec3& block) const {
-    // A slice stands for what lies half a slice before and behind it. One more is for rounding.
+    // A slice covers half a slice before and behind it. One more is for rounding.
     constexpr double kSlices = 1.5;
     const glm::dvec3 first = 8.0 * glm::dvec3(block) - eye;
     const double least = frontToBack ? first.x - kSlices : -(first.x + 7 + kSlices);

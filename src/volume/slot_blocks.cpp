@@ -23,13 +23,12 @@ bool liesBefore(const SlotBlock& a, const SlotBlock& b) {
     return keyOf(a.position) < keyOf(b.position);
 }
 
-// Parts that are missing, and those that are to be made again.
 struct Wanted {
     std::vector<std::size_t> missing;
     std::vector<std::size_t> again;
 };
 
-// Returns what lacks blocks that have codes which are seen; null: that lacks any.
+// Returns the parts that lack blocks with seen codes. With null, any missing block counts.
 Wanted wantedParts(const std::vector<BlockMaker::Part>& parts, const std::vector<bool>& isMade,
                    const std::vector<CodeRange>& leftOut, const SeenCodes* seen) {
     Wanted wanted;
@@ -50,7 +49,7 @@ struct SlotBlocks::Columns {
 
     const std::vector<SlotBlock>& blocks;
     // Empty if the rectangle is mostly empty.
-    std::vector<std::size_t> begins;  // [u][v], and one more
+    std::vector<std::size_t> begins;  // [u][v], and the end
     glm::ivec2 first{0};
     glm::ivec2 count{0};
 };
@@ -90,7 +89,7 @@ const SlotBlock* SlotBlocks::Columns::find(const glm::ivec3& position) const {
         const auto i = std::size_t(column.x) * std::size_t(count.y) + std::size_t(column.y);
         begin = blocks.begin() + std::ptrdiff_t(begins[i]);
         end = blocks.begin() + std::ptrdiff_t(begins[i + 1]);
-        // Mostly none is missing.
+        // Columns mostly have no gaps.
         const int behind = begin == end ? -1 : position.x - begin->position.x;
         if (behind >= 0 && behind < end - begin && (begin + behind)->position == position)
             return &*(begin + behind);
@@ -118,12 +117,12 @@ SlotBlocks::SlotBlocks(int sliceAxis, std::unique_ptr<const BlockMaker> maker)
 
 SlotBlocks::~SlotBlocks() = default;
 
-// Makes parts, as BlockMaker::make does; who calls holds the lock. Those that were made without
-// some of their blocks are made again as a whole, others' slots too.
+// Makes parts like BlockMaker::make. The caller holds the lock. A part that was made incompletely
+// is made again as a whole, with new slots for blocks that exist already.
 void SlotBlocks::makeParts(const std::vector<std::size_t>& parts, const SeenCodes* seen) const {
     if (parts.empty()) return;
     BlockMaker::Made made;
-    // Work taken on while waiting here might want the same blocks.
+    // A task that this thread runs while it waits might want the same blocks.
     isolated([&] { made = maker_->make(parts, seen); });
     requireMemory("list of voxel blocks",
                   double(blocks_->size() + made.blocks.size()) * sizeof(SlotBlock));
@@ -131,14 +130,14 @@ void SlotBlocks::makeParts(const std::vector<std::size_t>& parts, const SeenCode
     both.reserve(blocks_->size() + made.blocks.size());
     std::merge(blocks_->begin(), blocks_->end(), made.blocks.begin(), made.blocks.end(),
                std::back_inserter(both), liesBefore);
-    // Of a part that is made again some are there.
+    // A part that is made again repeats some blocks.
     const auto areOne = [](const SlotBlock& a, const SlotBlock& b) {
         return a.position == b.position;
     };
     both.erase(std::unique(both.begin(), both.end(), areOne), both.end());
     auto blocks = std::make_shared<const std::vector<SlotBlock>>(std::move(both));
     storage_.reserve(storage_.size() + made.storage.size());
-    // Nothing fails from here on.
+    // Nothing throws from here on.
     std::move(made.storage.begin(), made.storage.end(), std::back_inserter(storage_));
     blocks_ = std::move(blocks);
     for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -17,7 +17,7 @@
 
 namespace deltasplat {
 
-/// Which codes are seen, asked for whole ranges.
+/// The codes that are seen, with fast queries for ranges.
 class SeenCodes {
   public:
     /// @param isSeen  isSeen(code) for 0 .. kCodeCount - 1
@@ -26,21 +26,20 @@ class SeenCodes {
         for (int code = 0; code < kCodeCount; ++code)
             before_[std::size_t(code) + 1] = before_[std::size_t(code)] + (isSeen(code) ? 1 : 0);
     }
-    /// Whether any of lowest .. highest is.
+    /// Whether any code in lowest .. highest is seen.
     bool hasAny(Code lowest, Code highest) const {
         return before_[std::size_t(highest) + 1] != before_[lowest];
     }
 
   private:
-    std::vector<int> before_;  // [code]: how many before it are seen
+    std::vector<int> before_;  // [code]: number of seen codes before it
 };
 
 class SeenCodes;
 
-/// A slot in 16 bits: 0 = empty, else code + 1; for codes below 65535.
+/// A slot in 16 bits: 0 = empty, else code + 1. Only for codes below 65535.
 using ShortSlot = std::uint16_t;
 
-/// An 8x8x8 block with active voxels.
 struct SlotBlock {
     glm::ivec3 position{0};            ///< of its first voxel in (slice, u, v) order, divided by 8
     const ShortSlot* slots = nullptr;  ///< [slice][u][v]; null: all are `tileSlot`
@@ -49,26 +48,24 @@ struct SlotBlock {
     Code highest = 0;
 };
 
-/// The lowest and the highest of some codes; nothing if there are none.
+/// Lowest and highest code of a set; nothing if the set is empty.
 using CodeRange = std::optional<std::pair<Code, Code>>;
 
-/// Where the slots of blocks lie.
 using SlotStorage = std::vector<std::unique_ptr<ShortSlot[]>>;
 
-/// Makes blocks of a volume, in parts of which it is known beforehand which codes they have.
+/// Makes the blocks of a volume in parts. The codes of a part are known before its blocks are made.
 class BlockMaker {
   public:
-    /// Blocks one behind the other along the slices.
+    /// Consecutive blocks along the slices.
     struct Part {
-        glm::ivec3 first{0};  ///< place of the first, as SlotBlock::position
+        glm::ivec3 first{0};  ///< position of the first block
         Code lowest = 0;      ///< range of the active voxels' codes
         Code highest = 0;
     };
 
-    /// What make() has made.
     struct Made {
         std::vector<SlotBlock> blocks;   ///< in the order of the parts
-        std::vector<CodeRange> leftOut;  ///< of each part, the codes of the blocks left out
+        std::vector<CodeRange> leftOut;  ///< per part, the codes of the blocks left out
         SlotStorage storage;             ///< of the blocks' slots
     };
 
@@ -77,38 +74,35 @@ class BlockMaker {
     BlockMaker& operator=(const BlockMaker&) = delete;
     virtual ~BlockMaker() = default;
 
-    /// By u, then v, then slice; no block lies in two of them.
+    /// Ordered by u, then v, then slice. Each block lies in one part only.
     virtual const std::vector<Part>& parts() const = 0;
     /// Makes the blocks of some parts, on all threads. One call at a time.
-    /// @param parts  their numbers, in order
-    /// @param seen   null, or leaves blocks out that have none of these codes
-    /// @throw Error(kInput) if they are not what was known of them; Error(kFailed) if memory does
-    ///        not hold them
+    /// @param parts  indices into parts(), in increasing order
+    /// @param seen   null, or blocks without any of these codes are left out
+    /// @throw Error(kInput) if blocks contradict what was known; Error(kFailed) if out of memory
     virtual Made make(std::span<const std::size_t> parts, const SeenCodes* seen) const = 0;
 };
 
-/// The codes of a volume as they lie along a slice axis: what words are made of, block by block,
-/// without a tree. Blocks may be made when they are first asked for. Thread-safe.
+/// The codes of a volume along a slice axis; words need no tree. Made on first use. Thread-safe.
 class SlotBlocks {
   public:
     /// @param blocks   by u, then v, then slice; each has active voxels
-    /// @param storage  what they point into
+    /// @param storage  slots that the blocks point into
     SlotBlocks(int sliceAxis, std::vector<SlotBlock> blocks, SlotStorage storage);
     SlotBlocks(int sliceAxis, std::unique_ptr<const BlockMaker> maker);
     ~SlotBlocks();
 
     int sliceAxis() const { return sliceAxis_; }
-    /// All blocks; what BlockMaker::make throws.
+    /// All blocks. Throws as BlockMaker::make does.
     const std::vector<SlotBlock>& blocks() const;
-    /// Returns blocks in the same order, of which there are all that have codes which are seen.
+    /// Returns blocks in the same order, at least all that have seen codes.
     std::shared_ptr<const std::vector<SlotBlock>> blocksWith(const SeenCodes& seen) const;
-    /// Returns a block by its position, or null if there is none.
     const SlotBlock* find(const glm::ivec3& position) const;
-    /// Returns how much memory blocks take, without making any.
+    /// Returns the bytes of the blocks made so far.
     std::size_t memoryBytes() const;
 
   private:
-    // Blocks, and where columns of a rectangle of u and v begin among them.
+    // Blocks, and an index of the columns in a rectangle of u and v.
     struct Columns;
     using Blocks = std::shared_ptr<const std::vector<SlotBlock>>;
 
@@ -118,12 +112,12 @@ class SlotBlocks {
     int sliceAxis_;
     mutable std::mutex mutex_;
     mutable SlotStorage storage_;
-    mutable Blocks blocks_;                            // those made so far
-    mutable std::unique_ptr<const BlockMaker> maker_;  // null once all are made
-    mutable std::vector<bool> isMade_;                 // of its parts
-    mutable std::vector<CodeRange> leftOut_;           // likewise, of blocks that are not made
+    mutable Blocks blocks_;                            // made so far
+    mutable std::unique_ptr<const BlockMaker> maker_;  // null once all blocks are made
+    mutable std::vector<bool> isMade_;                 // [part]
+    mutable std::vector<CodeRange> leftOut_;  // [part]: codes of the blocks that are not made
     mutable std::unique_ptr<const Columns> columns_;
-    mutable std::atomic<const Columns*> all_ = nullptr;  // null until all are made
+    mutable std::atomic<const Columns*> all_ = nullptr;  // null until all blocks are made
 };
 
 }  // namespace deltasplat

@@ -12,8 +12,7 @@
 
 namespace deltasplat {
 
-/// Makes a tree of the values that codes stand for, active where they are, tiles as tiles.
-/// Multi-threaded.
+/// Makes a tree of the codes' values, with the same active voxels and tiles. Multi-threaded.
 template <typename Tree>
 typename Tree::Ptr treeFromCodes(const CodeTree::Tree& codes, const CodeBook& book,
                                  typename Tree::ValueType background) {
@@ -33,7 +32,7 @@ typename Tree::Ptr treeFromCodes(const CodeTree::Tree& codes, const CodeBook& bo
             }
         });
     }
-    // Tiles of a mask have values, too.
+    // In a mask only tiles have values.
     forActiveTiles(
         *tree, [&](const auto& tile) { tile.setValue(valueOf(codes.getValue(tile.getCoord()))); });
     return tree;

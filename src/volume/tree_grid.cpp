@@ -11,7 +11,7 @@ namespace deltasplat {
 
 std::string TreeGrid::name() const {
     const std::string key = openvdb::GridBase::META_GRID_NAME;
-    // To OpenVDB numbers are names as well.
+    // OpenVDB accepts numbers as names.
     if (const auto number = metadata.get<std::int32_t>(key)) return std::to_string(*number);
     if (const auto number = metadata.get<std::int64_t>(key)) return std::to_string(*number);
     if (const auto flag = metadata.get<bool>(key)) return *flag ? "true" : "false";

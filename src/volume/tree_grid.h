@@ -15,24 +15,21 @@
 
 namespace deltasplat {
 
-/// Trees, for TreeGrid::apply.
 template <typename... Trees>
 struct TreeTypes {};
 
-/// The trees that are volumes here.
 using ScalarTrees = TreeTypes<openvdb::FloatTree, openvdb::DoubleTree, openvdb::Int32Tree,
                               openvdb::Int64Tree, openvdb::BoolTree, openvdb::MaskTree>;
 
-/// Returns what a .vdb file calls the type of a tree's values: "float", "mask", ...
+/// Returns the type name in a .vdb file of a tree's values: "float", "mask", ...
 template <typename Tree>
 std::string typeOf() {
-    // Masks call their values bool.
+    // OpenVDB calls the values of masks bool.
     const bool isMask = std::is_same_v<Tree, openvdb::MaskTree>;
     return isMask ? "mask" : openvdb::typeNameAsString<typename Tree::ValueType>();
 }
 
-/// Calls use(std::type_identity<Tree>()) with the one of `Trees` that has values of `type`, a
-/// typeOf(); returns false, and does not, if there is none.
+/// Calls use(std::type_identity<Tree>()) with the tree of typeOf() `type`, or returns false.
 template <typename... Trees, typename Use>
 bool applyType(TreeTypes<Trees...>, const std::string& type, const Use& use) {
     const auto tryOne = [&]<typename Tree>(std::type_identity<Tree> one) {
@@ -43,18 +40,17 @@ bool applyType(TreeTypes<Trees...>, const std::string& type, const Use& use) {
     return (tryOne(std::type_identity<Trees>()) || ...);
 }
 
-/// A grid: a tree of OpenVDB's, and what a .vdb file says besides. OpenVDB's own grids need its
-/// library, which takes longer to load than small grids to read; this one does not.
+/// A grid: a tree of OpenVDB and the other data that a .vdb file has. Unlike OpenVDB's own grids it
+/// works without OpenVDB's library, which takes longer to load than a small grid takes to read.
 struct TreeGrid {
     std::shared_ptr<openvdb::TreeBase> tree;
-    VdbMetadata metadata;                       ///< name and class among them
+    VdbMetadata metadata;                       ///< includes name and class
     openvdb::math::MapBase::ConstPtr map = {};  ///< world from index
 
     std::string name() const;
-    /// Returns typeOf() the tree.
     std::string type() const;
 
-    /// Returns the tree as what it is; null if it is another.
+    /// Returns the tree as type `Tree`, or null if it has another type.
     template <typename Tree>
     const Tree* as() const {
         return tree->type() == Tree::treeType() ? static_cast<const Tree*>(tree.get()) : nullptr;
@@ -64,8 +60,7 @@ struct TreeGrid {
         return const_cast<Tree*>(static_cast<const TreeGrid&>(*this).as<Tree>());
     }
 
-    /// Calls use(tree) with the tree as what it is; returns false, and does not, if it is none of
-    /// `Types`, a TreeTypes.
+    /// Calls use(tree) with the typed tree, or returns false if `Types`, a TreeTypes, lacks it.
     template <typename Types, typename Use>
     bool apply(const Use& use) const {
         return applyAs(*this, Types(), use);
@@ -86,40 +81,37 @@ struct TreeGrid {
     }
 };
 
-/// Returns a grid of the same tree.
 TreeGrid fromOpenVdb(const openvdb::GridBase::ConstPtr& grid);
 
-/// Returns a grid of OpenVDB's, of the same tree. It needs OpenVDB's library.
-/// @throw Error(kFailed) if it is not a scalar grid; Error(kInput) if OpenVDB does not take the
-///        metadata
+/// Returns an OpenVDB grid that shares the tree. Needs OpenVDB's library.
+/// @throw Error(kFailed) if the grid is not scalar; Error(kInput) if OpenVDB rejects the metadata
 openvdb::GridBase::Ptr toOpenVdb(const TreeGrid& grid);
 
 struct PackedGrid;
 
-/// A volume's own grid, in its own value type: every value, inactive ones included, background,
-/// transform, class and metadata.
+/// A volume's own grid in its own type: all values, background, transform, class and metadata.
 struct SourceGrid {
-    TreeGrid grid;  ///< without a tree if `packed` is there
-    /// .vdb: the metadata of the file itself, the same for all of its grids.
+    TreeGrid grid;  ///< has no tree if `packed` is set
+    /// .vdb: metadata of the whole file, the same for all of its grids.
     VdbMetadata fileMetadata = {};
-    /// Of a volume that is read to be compared alone: values that are still in their file.
+    /// Values that are still in their file, if the volume is read only for a comparison.
     std::shared_ptr<const PackedGrid> packed = nullptr;
-    /// The grid that makeVolume() was given; null of others.
+    /// The grid that makeVolume() was given, else null.
     openvdb::GridBase::ConstPtr given = nullptr;
 };
 
-/// Whether integers of the source are unsigned ones by their bits. Their type says so: no .vdb has
-/// it.
+/// Whether the source's 64-bit integers are unsigned. Its type tells; no .vdb has this type.
 inline bool holdsUnsigned(const Volume& volume) {
-    return volume.source && volume.type == "uint64" && volume.source->grid.as<openvdb::Int64Tree>();
+    return volume.source() && volume.type() == "uint64" &&
+           volume.source()->grid.as<openvdb::Int64Tree>();
 }
 
-/// Says that a sound grid holds values that are NaN or infinite.
+/// A sound grid holds values that are NaN or infinite.
 struct NotFinite : Error {
     using Error::Error;
 };
 
-/// Says that a sound grid is of a kind that is not read: which says what is in the way.
+/// A sound grid is of a kind that cannot be read. `obstacle` names the cause.
 struct UnreadableGrid : Error {
     /// @param where  file and grid
     /// @param which  "a NonlinearFrustumMap transform"
@@ -129,7 +121,7 @@ struct UnreadableGrid : Error {
     std::string obstacle;
 };
 
-/// Says that leaves of a grid cannot be unpacked where they were looked for.
+/// Leaves of a grid cannot be unpacked.
 struct DamagedLeaves : Error {
     /// @param where  file and grid
     explicit DamagedLeaves(const std::string& where)

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <string>
 
-// OpenVDB's trees of the usual values are generated once, in tree_types_*.cpp: a file that includes
-// this compiles in half the time. The root stays out, because a member of OpenVDB 10's that nobody
-// calls does not compile; such a member of leaves is replaced.
+// Code for OpenVDB's trees of the usual values is generated once, in tree_types_*.cpp. A file that
+// includes this header compiles in half the time. The root stays out because an unused member of
+// OpenVDB 10 does not compile; LeafNode::str has the same fault and is replaced.
 // NOLINTBEGIN(bugprone-macro-parentheses): types in template arguments
 #define DELTASPLAT_LEAF_TEXT(T) \
     template <>                 \

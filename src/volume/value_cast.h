@@ -10,7 +10,7 @@
 
 namespace deltasplat {
 
-/// Returns whether two values are the same, bit for bit: 0 and -0 are not, a NaN and itself are.
+/// Compares bit for bit: 0 and -0 differ, a NaN equals itself.
 template <typename T>
 bool haveSameBits(T a, T b) {
     if constexpr (std::is_floating_point_v<T>) {
@@ -21,8 +21,8 @@ bool haveSameBits(T a, T b) {
     }
 }
 
-/// Returns the value of type T nearest to `value`: whole numbers rounded, what is beyond the type's
-/// range its end, NaN 0 for types without one. A plain cast of such values has no defined result.
+/// Returns the value of type T nearest to `value`. Rounds for whole types, clamps to the type's
+/// range, and returns 0 for NaN if T has none. A plain cast is undefined for such values.
 template <typename T>
 T valueAs(double value) {
     if constexpr (std::is_same_v<T, double>) {
@@ -34,7 +34,7 @@ T valueAs(double value) {
         constexpr auto kMost = double(std::numeric_limits<T>::max());
         return T(std::clamp(value, -kMost, kMost));
     } else {
-        // The end itself may be no double, the number after it is: a power of two.
+        // The maximum of T may be no double, but the next number is one: a power of two.
         const double beyond = std::ldexp(1.0, std::numeric_limits<T>::digits);
         const double rounded = std::nearbyint(value);
         if (std::isnan(value)) return T{0};

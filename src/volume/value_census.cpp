@@ -44,7 +44,7 @@ CodeBook::Values kindOf(const ValueCensus& census, bool real) {
 
 std::optional<CodeBook> plainBook(const ValueCensus& census, bool real) {
     if (real && census.half) return CodeBook::half();
-    constexpr double kMostInteger = 0x1p62;  // more than that, no offset holds
+    constexpr double kMostInteger = 0x1p62;  // a larger offset has no exact integer
     const bool near = census.exact && census.max - census.min < kCodeCount &&
                       std::max(std::abs(census.min), std::abs(census.max)) <= kMostInteger;
     if (census.whole && near) return CodeBook::integer(std::int64_t(census.min));
@@ -62,7 +62,7 @@ CodeBook chooseBook(const ValueCensus& census, bool real, const ReadOptions& rea
     requireFiniteSpan(where, census.min, census.max);
     if (!linear && reading.relativeError) {
         const CodeBook::Range range{census.min, census.max, census.least, kindOf(census, real)};
-        // Finer steps than asked for leave a tolerance room for holding values.
+        // Finer steps than asked for leave room for a tolerance that holds values.
         for (const double error : {*reading.relativeError / 4, *reading.relativeError}) {
             const auto book = CodeBook::relative(range, error);
             if (book) return *book;
@@ -101,24 +101,23 @@ std::vector<ValueCell> ValueSurvey::cells() const {
 
 namespace {
 
-// A little less than is promised: values between two ladders may be on the coarser one's step.
+// Slightly below the promise, because values between two ladders may have the coarser step.
 constexpr double kRoom = 0.99;
 constexpr double kRelative = kRelativeNeed * kRoom;
 
-// What values may be off by: scale * max(least, min(kRelative * |value|, cap)); the cap is only for
-// values of the bulk.
+// Allowed error: scale * max(least, min(kRelative * |value|, cap)); the cap only within the bulk.
 struct Allowed {
     double least = 0;
     double cap = std::numeric_limits<double>::infinity();
     double scale = 1;
 };
 
-// Values of one sign, close together, that are allowed the same error.
+// A range of close values of one sign with the same allowed error.
 struct Stretch {
     double low = 0;
     double high = 0;
     bool inBulk = false;
-    bool frequent = false;  // one value, which is to be a code's
+    bool frequent = false;  // a single value that gets a code of its own
 
     double leastMagnitude() const {
         return low <= 0 && high >= 0 ? 0 : std::min(std::fabs(low), std::fabs(high));
@@ -130,7 +129,7 @@ struct Stretch {
     }
 };
 
-// Cuts a cell at the frequent values in it, which become stretches of their own.
+// Cuts a cell at its frequent values, which become stretches of their own.
 void addCell(const ValueCell& cell, const std::vector<double>& frequent, glm::dvec2 bulk,
              CodeBook::Values kind, std::vector<Stretch>& stretches) {
     const bool inBulk = cell.high >= bulk.x && cell.low <= bulk.y;
@@ -144,12 +143,12 @@ void addCell(const ValueCell& cell, const std::vector<double>& frequent, glm::dv
     if (low <= cell.high) stretches.push_back({low, cell.high, inBulk, false});
 }
 
-// Lays ladders along stretches, from the lowest to the highest.
+// Lays ladders along stretches in increasing order.
 class LadderBuilder {
   public:
     explicit LadderBuilder(CodeBook::Values kind) : kind_(kind) {}
 
-    /// @param below  rungs have to stay below this
+    /// @param below  upper limit of the rungs, exclusive
     void add(const Stretch& stretch, const Allowed& allowed, double below) {
         const double width = 2 * stretch.error(allowed);
         if (stretch.high - stretch.low <= width) {
@@ -161,7 +160,7 @@ class LadderBuilder {
         const double step = stepBelow(width, large, kind_);
         const double first = std::floor(stretch.low / step);
         const double last = std::ceil(stretch.high / step);
-        // A rung may lie a little outside of its stretch, where there is room.
+        // A rung may lie a little outside of its stretch if there is room.
         const bool room = last * step < below && last * step <= largestOf(kind_) &&
                           first * step >= -largestOf(kind_);
         room ? addLadder(first, last, step) : addEnds(stretch, step);
@@ -171,7 +170,7 @@ class LadderBuilder {
     std::vector<CodeBook::Piece> take() { return std::move(pieces_); }
 
   private:
-    // Rungs strictly inside of the stretch, and its ends.
+    // Adds the stretch's ends and the rungs strictly between them.
     void addEnds(const Stretch& stretch, double step) {
         addPiece({stretch.low, step, 1});
         const double first = std::floor(stretch.low / step) + 1;
@@ -206,7 +205,7 @@ class LadderBuilder {
     static constexpr int kMany = 1 << 30;
     CodeBook::Values kind_;
     std::vector<CodeBook::Piece> pieces_;
-    double highest_ = 0;  // rung so far
+    double highest_ = 0;  // highest rung so far
     int codes_ = 0;
 };
 
@@ -221,7 +220,7 @@ LadderBuilder build(const std::vector<Stretch>& stretches, CodeBook::Values kind
     return builder;
 }
 
-// Magnitudes of the values, but for 0 and frequent ones, that are of no more than their share.
+// Magnitudes below which the named share of the values lies, without 0 and frequent values.
 struct Magnitudes {
     double least = 0;
     double hundredth = 0;
@@ -249,8 +248,7 @@ Magnitudes magnitudesOf(std::vector<ValueCell> cells) {
             std::max(std::fabs(last.low), std::fabs(last.high))};
 }
 
-// Makes the errors as small as 65536 codes allow: numbers are raised one after the other, each only
-// as far as it takes.
+// Makes errors as small as 65536 codes allow. Raises one number after the other, as far as needed.
 class ErrorFinder {
   public:
     ErrorFinder(const std::vector<Stretch>& stretches, CodeBook::Values kind)
@@ -259,7 +257,7 @@ class ErrorFinder {
     Allowed find(const Magnitudes& magnitudes, double bulkWidth) {
         constexpr double kFinest = 0x1p-20;
         constexpr double kWorthSaying = 1e-3;
-        // More is not needed where every cell has one code.
+        // At this scale every cell has one code.
         constexpr double kCoarsest = 1e6;
         const double largest = kRelative * magnitudes.largest;
         const double bulk = bulkWidth > 0 ? kRoom * kBulkNeed * bulkWidth : largest;
@@ -273,15 +271,15 @@ class ErrorFinder {
             return allowed_;
         }
         const bool found =
-            // What is nearest to 0, a hundredth of the values, may be off by a larger share.
+            // The hundredth of the values nearest to 0 may be off by a larger share, ...
             raise(allowed_.least, atMostBulk(kRelative * magnitudes.hundredth)) ||
-            // The bulk may be no better than others, ...
+            // ... the bulk may be no more accurate than other values, ...
             raise(allowed_.cap, largest) ||
-            // ... a tenth of the values off by more than a thousandth of themselves, ...
+            // ... the tenth nearest to 0 may be off by more than a thousandth of itself, ...
             raise(allowed_.least, atMostBulk(kWorthSaying * magnitudes.tenth)) ||
-            // ... all by a thousandth, ...
+            // ... all values by a thousandth, ...
             raise(allowed_.scale, kWorthSaying / kRelative) ||
-            // ... all that is small by what is next to nothing of the bulk.
+            // ... and small values by kBulkNeed of the bulk's width.
             raise(allowed_.least, bulk) || raise(allowed_.scale, kCoarsest);
         return found ? allowed_ : Allowed{largest, largest, kCoarsest};
     }
@@ -289,14 +287,14 @@ class ErrorFinder {
   private:
     bool suffices() const { return build(stretches_, kind_, allowed_).codes() <= kCodeCount; }
 
-    // Raises one of the numbers up to `most` until the codes suffice; returns whether they do.
+    // Raises a number up to `most` until the codes suffice. Returns whether they do.
     bool raise(double& number, double most) {
         if (!(most > number)) return suffices();
         double low = number;
         number = most;
         if (!suffices()) return false;
         double high = most;
-        constexpr int kHalvings = 40;  // of the ratio
+        constexpr int kHalvings = 40;  // of the interval's ratio
         for (int i = 0; i < kHalvings; ++i) {
             number = std::sqrt(low) * std::sqrt(high);
             (suffices() ? high : low) = number;
@@ -310,7 +308,7 @@ class ErrorFinder {
     Allowed allowed_;
 };
 
-// Takes 0 and, as far as they are counted, the frequent values out of the cells.
+// Removes 0 and the counted part of the frequent values from the cells.
 std::vector<ValueCell> withoutFrequent(std::vector<ValueCell> cells,
                                        const std::vector<FrequentValue>& frequent) {
     for (ValueCell& cell : cells) {
@@ -332,7 +330,7 @@ glm::dvec2 bulkOf(const std::vector<ValueCell>& cells, const std::vector<Frequen
     const std::vector<ValueCell> others = withoutFrequent(cells, frequent);
     std::uint64_t total = 0;
     for (const ValueCell& cell : others) total += cell.count;
-    const std::uint64_t rank = (total - 1) / 100;  // from either end
+    const std::uint64_t rank = (total - 1) / 100;  // counted from either end
     const auto find = [&](auto begin, auto end) {
         std::uint64_t seen = 0;
         auto cell = begin;

@@ -26,16 +26,14 @@
 
 namespace deltasplat {
 
-/// Returns where to begin looking for `bits` in an open hash table of `size` places, a power of two
-/// from 2 on.
+/// Returns where to look first in an open hash table of `size` places, a power of two from 2 on.
 inline std::size_t hashPlace(std::uint64_t bits, std::size_t size) {
     constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // 2^64 over the golden ratio (D. Knuth)
-    // Doubles that are whole numbers have zeros at the end, which multiplication keeps.
+    // Doubles that are whole end in zero bits, and multiplication would keep these zeros.
     return std::size_t((bits ^ (bits >> 32)) * kSpread >> (65 - std::bit_width(size)));
 }
 
-/// The different values among many, as long as there are at most kCodeCount of them: told
-/// apart by their bits, so that -0 is not 0.
+/// Collects the different values among many, up to kCodeCount. Compares bits, so -0 differs from 0.
 class DistinctValues {
   public:
     void add(double value) {
@@ -44,32 +42,30 @@ class DistinctValues {
         if (bits != last_) insert(bits);
     }
     void append(const DistinctValues& other);
-    /// There are more than kCodeCount.
+    /// Whether there are more than kCodeCount values, or giveUp() was called.
     bool tooMany() const { return tooMany_; }
-    /// Stops collecting, as if there were too many.
     void giveUp();
-    /// Returns the values in increasing order, -0 before 0, NaN last by their bits. Meaningless if
-    /// there are too many.
+    /// Returns increasing values, -0 before 0, NaN last by bits. Meaningless if there are too many.
     std::vector<double> sorted() const;
 
   private:
-    static constexpr std::uint64_t kNone = 0x7ff8000000000000;  // stands for an empty place
+    static constexpr std::uint64_t kNone = 0x7ff8000000000000;  // marks an empty place
     void insert(std::uint64_t bits);
     void place(std::uint64_t bits);
     void grow();
 
-    std::vector<std::uint64_t> places_;  // an open hash table, at most half full
+    std::vector<std::uint64_t> places_;  // open hash table, at most half full
     std::size_t count_ = 0;
     std::optional<std::uint64_t> last_;
-    bool hasNone_ = false;  // kNone is among the values: the usual NaN
+    bool hasNone_ = false;  // kNone, the usual NaN, is among the values
     bool tooMany_ = false;
 };
 
-/// Finds every value that more than a ninth of many values have, in one pass over them.
+/// Finds every value that makes up more than a ninth of all values, in one pass.
 class FrequentValues {
   public:
     void add(double value, std::uint64_t count = 1) {
-        // Neighbours are often equal, and most places are taken by what is frequent.
+        // Neighbours are often equal, and most places hold frequent values.
         for (std::size_t i = 0; i < kPlaces; ++i) {
             if (places_[i].count > 0 && places_[i].value == value) {
                 places_[i].count += count;
@@ -97,7 +93,7 @@ class FrequentValues {
             places_[i] = {all[i].value, all[i].count - lost};
     }
 
-    /// Returns what was found, and may be more: with counts that are at most the true ones.
+    /// Returns all frequent values, and maybe others. Counts are at most the true ones.
     std::vector<FrequentValue> values() const {
         std::vector<FrequentValue> found;
         for (const FrequentValue& place : places_) {
@@ -124,48 +120,47 @@ class FrequentValues {
     std::array<FrequentValue, kPlaces> places_{};
 };
 
-/// Values that lie close together: all 0, or of one sign and within an eighth of an octave.
+/// A range of close values: all 0, or of one sign and within an eighth of an octave.
 struct ValueCell {
-    double low = 0;   ///< the smallest value
-    double high = 0;  ///< the largest value
+    double low = 0;
+    double high = 0;
     std::uint64_t count = 0;
 };
 
-/// How exactly a fitted book is to keep values: each within kRelativeNeed of its magnitude, and
-/// values of the bulk within kBulkNeed of its width as well.
+/// Goal of a fitted book: values within kRelativeNeed of themselves, the bulk's also within
+/// kBulkNeed of its width.
 inline constexpr double kRelativeNeed = 2e-4;
 inline constexpr double kBulkNeed = 0x1p-16;
 
-/// Returns the bulk of the values: from the cell of their 1st to that of their 99th percentile,
-/// those that are 0 and the frequent ones left out. Outliers do not move it.
-/// @param frequent  with counts that are at most the true ones
+/// Returns the bulk of the values: from the cell of the 1st percentile to that of the 99th. Ignores
+/// 0 and the frequent values; outliers do not move the bulk.
+/// @param frequent  counts are at most the true ones
 glm::dvec2 bulkOf(const std::vector<ValueCell>& cells, const std::vector<FrequentValue>& frequent);
 
-/// Fits a book to where values lie: codes go only there. All is asked of every value, but for those
-/// next to 0, whose share of themselves is next to nothing; they are allowed an error that is as
-/// small as 65536 codes allow. If codes are left over, all errors are made smaller alike; if they
-/// do not suffice, some needs are given up, one after the other and each only as far as it takes:
-///   1. the hundredth of the values that is nearest to 0 is off by more than kRelativeNeed;
-///   2. the bulk is kept no better than other values;
-///   3. the tenth of the values that is nearest to 0 is off by more than a thousandth of itself;
+/// Fits a book to the distribution of values, without codes where there are no values. Every value
+/// meets both needs, except values so close to 0 that a share of them is next to nothing: their
+/// error is as small as 65536 codes allow. Spare codes make all errors smaller by the same factor.
+/// If codes are too few, needs are given up in this order, each only as far as necessary:
+///   1. the hundredth of the values nearest to 0 is off by more than kRelativeNeed;
+///   2. the bulk is no more accurate than other values;
+///   3. the tenth of the values nearest to 0 is off by more than a thousandth of itself;
 ///   4. every value is off by up to a thousandth of itself;
 ///   5. values are off by kBulkNeed of the bulk's width;
 ///   6. every value is off by a larger share.
 /// @param cells     at least one
-/// @param frequent  values that are to have a code to themselves; those outside of all cells none
-/// @param kind      what the values of codes are to be
+/// @param frequent  values that get a code of their own; values outside of all cells get none
+/// @param kind      of the values that codes stand for
 CodeBook fitBook(const std::vector<ValueCell>& cells, const std::vector<FrequentValue>& frequent,
                  CodeBook::Values kind);
 
-// What numbers of a kind there are.
+// Arithmetic of the numbers of one kind.
 
-/// Returns the largest number.
 inline double largestOf(CodeBook::Values kind) {
     return kind == CodeBook::Values::kFloat ? double(std::numeric_limits<float>::max())
                                             : std::numeric_limits<double>::max();
 }
 
-/// Returns the distance from `large` > 0 to the number below it.
+/// Returns the distance from `large` > 0 to the next smaller number.
 inline double spacingBelow(double large, CodeBook::Values kind) {
     const double doubles = large - std::nextafter(large, 0.0);
     if (kind == CodeBook::Values::kWhole) return std::max(doubles, 1.0);
@@ -173,7 +168,6 @@ inline double spacingBelow(double large, CodeBook::Values kind) {
     return double(float(large)) - double(std::nextafter(float(large), 0.0f));
 }
 
-/// Returns the number above `value`.
 inline double nextAbove(double value, CodeBook::Values kind) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     if (kind == CodeBook::Values::kWhole)
@@ -182,19 +176,18 @@ inline double nextAbove(double value, CodeBook::Values kind) {
     return double(std::nextafter(float(value), std::numeric_limits<float>::infinity()));
 }
 
-/// Returns the number below `value`.
 inline double nextBelow(double value, CodeBook::Values kind) {
     return -nextAbove(-value, kind);
 }
 
-/// Returns a number next to `value`.
+/// Returns the nearest number, or one next to `value`.
 inline double nearestOf(double value, CodeBook::Values kind) {
     if (kind == CodeBook::Values::kWhole) return std::nearbyint(value);
     return kind == CodeBook::Values::kFloat ? double(float(value)) : value;
 }
 
-/// Returns the largest step of at most `width`, and at least of the spacing of numbers, whose
-/// multiples up to `large` are numbers: it has as few significant bits as that takes, at most 7.
+/// Returns the largest step that is at most `width`, at least the spacing of numbers, and whose
+/// multiples up to `large` are numbers. It has as few significant bits as that needs, at most 7.
 inline double stepBelow(double width, double large, CodeBook::Values kind) {
     const double spacing = spacingBelow(large, kind);
     if (!(width > spacing)) return spacing;
@@ -207,7 +200,7 @@ inline double stepBelow(double width, double large, CodeBook::Values kind) {
     return std::max(std::ldexp(std::floor(std::ldexp(mantissa, bits)), exponent - bits), spacing);
 }
 
-/// Counts where finite values lie.
+/// Counts the distribution of finite values.
 class ValueSurvey {
   public:
     void add(double value, std::uint64_t count = 1) {
@@ -220,11 +213,10 @@ class ValueSurvey {
         cell.count += count;
     }
     void append(const ValueSurvey& other);
-    /// Returns the cells in increasing order.
     std::vector<ValueCell> cells() const;
 
   private:
-    /// Sign, exponent and the three highest bits of what follows; 0 is not among denormals.
+    /// Key: sign, exponent and three bits of the mantissa. 0 has its own key, apart from denormals.
     static constexpr int kShift = 49;
     static constexpr std::size_t kKeys = (std::size_t{1} << (64 - kShift)) + 1;
     static std::size_t keyOf(double value) {
@@ -232,27 +224,27 @@ class ValueSurvey {
     }
     void open(std::size_t key, double value);
 
-    std::vector<std::uint16_t> cellOfKey_;  // [kKeys]: place in cells_ + 1; 0: none
+    std::vector<std::uint16_t> cellOfKey_;  // [kKeys]: index into cells_ + 1; 0: none
     std::vector<ValueCell> cells_;
-    std::vector<std::uint16_t> keys_;  // of cells_
+    std::vector<std::uint16_t> keys_;  // [cell]
 };
 
-/// What finite values have in common: all that the choice of a code book depends on.
+/// Common properties of finite values, sufficient for the choice of a code book.
 struct ValueCensus {
     double min = 0;
     double max = 0;
-    double least = 0;  ///< the smallest magnitude other than 0; 0 if there is none
+    double least = 0;  ///< smallest magnitude other than 0; 0 if there is none
     std::uint64_t count = 0;
     bool half = true;     ///< every value is a binary16 number
     bool whole = true;    ///< every value is a whole number, and none is -0
     bool exact = true;    ///< a double holds every value
     bool floats = true;   ///< a float holds every value
-    bool ints = true;     ///< an int64 holds every value, of integers of 64 bits
+    bool ints = true;     ///< an int64 holds every value, if the type is a 64-bit integer
     double rounding = 0;  ///< largest difference between an integer and its nearest double
     DistinctValues distinct;
-    ValueSurvey survey;  ///< unless it was skipped
+    ValueSurvey survey;  ///< empty if skipSurvey
     bool skipSurvey = false;
-    /// Values that have, or may have, many voxels: a book gives them codes of their own.
+    /// Values that have, or may have, many voxels and therefore get codes of their own.
     std::vector<FrequentValue> frequent;
 
     template <typename T>
@@ -278,8 +270,7 @@ struct ValueCensus {
         distinct.add(number);
         if (!skipSurvey) survey.add(number);
     }
-    /// Adds finite values, as add() does each of them. Returns false, and adds none, if one is not
-    /// finite; integers are.
+    /// Adds all values as add() does. If a value is not finite, returns false and adds none.
     template <typename T>
     bool addAll(std::span<const T> values) {
         if constexpr (std::is_same_v<T, float>) {
@@ -298,7 +289,7 @@ struct ValueCensus {
         for (const T value : values) add(value);
         return true;
     }
-    /// Adds a value that was added before, so many times more.
+    /// Adds `times` more of a value that was added before.
     void repeat(double value, std::uint64_t times) {
         count += times;
         if (!skipSurvey) survey.add(value, times);
@@ -316,7 +307,7 @@ struct ValueCensus {
         whole = whole && facts.isWhole;
     }
     static bool isHalf(double number) {
-        // Binary16 has 10 of the 52 bits behind the point, and most numbers have more.
+        // A binary16 has 10 of the 52 mantissa bits, and most numbers use more.
         if ((std::bit_cast<std::uint64_t>(number) & ((std::uint64_t{1} << 42) - 1)) != 0)
             return false;
         const double magnitude = std::fabs(number);
@@ -325,28 +316,27 @@ struct ValueCensus {
     }
     static double off(std::uint64_t value) {
         const auto number = double(value);
-        // The largest round to 2^64.
+        // The largest values round to 2^64.
         const std::uint64_t back = number < 0x1p64 ? std::uint64_t(number) : 0;
         return double(std::min(back - value, value - back));
     }
 };
 
-/// Returns the magnitude of which kBulkNeed of the bulk's width is the share kRelativeNeed.
+/// Returns the magnitude of which kRelativeNeed equals kBulkNeed of the bulk's width.
 double bulkMagnitude(const ValueCensus& census);
 
-/// Returns the code book of values that are all halves, or whole and close together, as chooseBook
-/// does; these need no survey, nor their different values. Empty: there is no such book.
+/// Returns the book that chooseBook chooses for values that are all halves, or all whole and close
+/// together; nothing for other values. Needs no survey and no distinct values.
 /// @param real  the source's type is real
 std::optional<CodeBook> plainBook(const ValueCensus& census, bool real);
 
-/// Returns the code book for values of this census: exact if there is one. Real values that are
-/// all halves get `half`; whole numbers that span at most 65536 get `integer`; at most 65536
-/// different ones `table`; others what fitBook makes of them: `pieces`, or `linear` where one
-/// ladder is as good.
+/// Chooses the code book for values of this census, an exact one if possible: real values that are
+/// all halves get `half`; whole numbers that span at most 65536, `integer`; at most 65536 different
+/// values, `table`; others fitBook's: `pieces`, or `linear` if one ladder is as good.
 /// @param real     the source's type is real; whole numbers never get `half`
-/// @param reading  its `bits` asks for `linear` instead of an exact book, for real types; its
-///                 `relativeError` for a `table` of relative errors instead of what would not be
-///                 exact, where 65536 codes are enough for that
+/// @param reading  `bits` asks for `linear` instead of an exact book, for real types;
+///                 `relativeError` for a `table` of relative errors instead of an inexact book, if
+///                 65536 codes suffice
 /// @param where    file, for messages
 /// @throw Error(kInput) if the values lie too far apart
 CodeBook chooseBook(const ValueCensus& census, bool real, const ReadOptions& reading,

@@ -25,7 +25,7 @@ struct MetadataType {
     std::uint32_t bytes;
 };
 
-// OpenVDB reads these without looking at the stored size, so the size must be right.
+// OpenVDB ignores the stored size of these types, so the size must be right.
 constexpr std::array<MetadataType, 16> kFixedTypes{{{"bool", 1},
                                                     {"int32", 4},
                                                     {"float", 4},
@@ -76,7 +76,7 @@ constexpr const char* kTypeName<glm::ivec3> = "vec3i";
 VdbMetadata::VdbMetadata(const openvdb::MetaMap& metadata) {
     for (auto own = metadata.beginMeta(); own != metadata.endMeta(); ++own) {
         std::ostringstream stream;
-        own->second->write(stream);  // its size, and its value
+        own->second->write(stream);  // size and value
         Entry entry{own->second->typeName(), stream.str().substr(sizeof(std::uint32_t))};
         if (isKnown(entry.type, entry.value.size())) insert(own->first, std::move(entry));
     }
@@ -211,7 +211,7 @@ void VdbBytes::skip(std::uint64_t count) {
 
 void VdbBytes::read(void* to, std::uint64_t count) {
     require(count);
-    // More and more, so that a few small fields take little.
+    // Reads grow, so that a few small fields cost little.
     constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 16;
     auto* out = static_cast<char*>(to);
     while (count > 0) {
@@ -246,7 +246,7 @@ std::string VdbBytes::bytes(std::uint64_t count) {
     return text;
 }
 
-// OpenVDB itself reads its files only on little endian machines.
+// OpenVDB itself reads its files only on little-endian machines.
 template <typename T>
 T VdbBytes::number() {
     T value;

@@ -44,7 +44,7 @@ MapBase::Ptr scaleMap(const glm::dvec3& scale, const glm::dvec3& origin) {
 }
 
 MapBase::Ptr affineMap(const glm::dmat4& worldFromIndex) {
-    // OpenVDB multiplies row vectors: its rows are GLM's columns.
+    // OpenVDB multiplies row vectors, so its rows are GLM's columns.
     Mat4d matrix;
     for (int row = 0; row < 4; ++row) {
         for (int column = 0; column < 4; ++column)
@@ -57,7 +57,7 @@ MapBase::Ptr affineMap(const glm::dmat4& worldFromIndex) {
 
 namespace {
 
-// Null where OpenVDB takes a voxel for flat.
+// Null if OpenVDB takes a voxel for flat.
 MapBase::Ptr mapIfAny(const glm::dmat4& m) {
     try {
         return isScaleAndTranslation(m) ? scaleMap({m[0].x, m[1].y, m[2].z}, glm::dvec3(m[3]))
@@ -88,8 +88,7 @@ MapBase::Ptr makeMap(const glm::dmat4& worldFromIndex) {
                 "such limit)");
 }
 
-// Transform's constructor takes near numbers for equal and rounds when it simplifies a map. Reading
-// one leaves it as it is.
+// Transform's constructor rounds when it simplifies a map. Reading a map keeps its numbers.
 Transform::Ptr transformOf(const MapBase& map) {
     openvdb::initialize();
     std::stringstream stream;
@@ -129,7 +128,7 @@ MapBase::Ptr readMap(std::istream& stream) {
     if (found == maps().end())
         OPENVDB_THROW(openvdb::KeyError, "Map " << type << " is not registered");
     if (type == NonlinearFrustumMap::mapType()) {
-        // It has another map, which it asks the library for, and reads what older files have.
+        // A frustum has another map, which it takes from the library, and reads older versions.
         openvdb::initialize();
         openvdb::io::setCurrentVersion(stream);
     }
@@ -158,7 +157,7 @@ glm::dmat4 worldFromIndexOf(const MapBase& map, const std::string& where) {
     try {
         matrix = matrixOf(map);
     } catch (const openvdb::ArithmeticError&) {
-        // OpenVDB's own word for a volume of a voxel below 3e-15.
+        // OpenVDB throws if a voxel's volume is below 3e-15.
     }
     bool finite = true;
     for (int axis = 0; axis < 4; ++axis) {
@@ -167,7 +166,7 @@ glm::dmat4 worldFromIndexOf(const MapBase& map, const std::string& where) {
     if (!finite || glm::determinant(matrix) == 0) {
         fail("a transform that cannot be inverted", "a finite affine map");
     }
-    // A damaged file may hold any matrix, and OpenVDB does not look at the last column.
+    // A damaged file may hold any matrix, and OpenVDB does not check the last column.
     if (glm::dvec4(matrix[0].w, matrix[1].w, matrix[2].w, matrix[3].w) != glm::dvec4(0, 0, 0, 1)) {
         fail("a transform that is a projection", "a finite affine map");
     }
@@ -176,8 +175,8 @@ glm::dmat4 worldFromIndexOf(const MapBase& map, const std::string& where) {
 
 namespace {
 
-// A map of the type named, which may be of another matrix.
-// @throw an exception of OpenVDB's where none of that type is like it
+// Returns a map of the given type; its matrix may differ.
+// @throw an exception of OpenVDB if the type cannot resemble the matrix
 MapBase::Ptr mapOfType(const std::string& type, const glm::dmat4& matrix) {
     const Vec3d scale(matrix[0].x, matrix[1].y, matrix[2].z);
     const Vec3d translation(matrix[3].x, matrix[3].y, matrix[3].z);
@@ -200,7 +199,7 @@ MapBase::Ptr makeMapOfType(const std::string& mapType, const glm::dmat4& worldFr
         const MapBase::Ptr map = mapOfType(mapType, worldFromIndex);
         if (matrixOf(*map) == worldFromIndex) return map;
     } catch (const openvdb::ArithmeticError&) {
-        // The matrix may be one of another type.
+        // The matrix may need another type.
     }
     return makeMapIfAny(worldFromIndex);
 }

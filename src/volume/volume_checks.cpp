@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "base/parallel.h"
 #include "base/text.h"
@@ -16,9 +17,95 @@
 #include "deltasplat/ingest/make_volume.h"
 #include "deltasplat/ingest/value_statistics.h"
 #include "volume/code_tree.h"
+#include "volume/placement.h"
 #include "volume/tree_grid.h"
 
 namespace deltasplat {
+namespace {
+
+// Throws what is wrong with parts of a volume: for a file, that is bad input.
+void requireSound(const VolumeData& data, const std::string& where, ErrorCode code) {
+    const auto refuseVolume = [&](const std::string& got, const std::string& expected) {
+        throw Error(code, where, got, expected);
+    };
+    const std::size_t counts = data.histogram.size();
+    if (counts != 0 && counts != std::size_t(kCodeCount)) {
+        refuseVolume("a histogram of " + std::to_string(counts) + " numbers",
+                     std::to_string(kCodeCount) + ", or none");
+    }
+    if (!(data.valueMin <= data.valueMax) || !std::isfinite(data.valueMin) ||
+        !std::isfinite(data.valueMax)) {
+        refuseVolume(
+            "values from " + numberText(data.valueMin) + " to " + numberText(data.valueMax),
+            "a range of finite numbers");
+    }
+    if (!data.empty() && data.box.empty()) refuseVolume("active voxels in no box", "their box");
+    if (!givesPlaces(data.worldFromIndex))
+        refuseVolume("a transform that gives no place to voxels", "one that can be inverted");
+    if (!data.lengthUnit.empty() && millimetresIn(data.lengthUnit) == 0)
+        refuseVolume("the unit of length \"" + printable(data.lengthUnit) + "\"", "mm, m, in, ...");
+    if (!data.space.empty() && data.space != "RAS" && data.space != "LPS")
+        refuseVolume("the space \"" + printable(data.space) + "\"", "RAS, LPS or none");
+}
+
+// Shared by all volumes without voxels.
+std::shared_ptr<const VolumeData> nothing() {
+    static const auto data = std::make_shared<const VolumeData>();
+    return data;
+}
+
+}  // namespace
+
+Volume::Volume() : data_(nothing()) {}
+
+Volume::Volume(VolumeData data) {
+    requireSound(data, "volume", ErrorCode::kUsage);
+    data_ = std::make_shared<const VolumeData>(std::move(data));
+}
+
+Volume Volume::withName(std::string name) const {
+    VolumeData data = *data_;
+    data.name = std::move(name);
+    return Volume(std::move(data));
+}
+
+Volume Volume::withPlace(const glm::dmat4& worldFromIndex, std::string space,
+                         std::string lengthUnit) const {
+    const bool isSame = worldFromIndex == data_->worldFromIndex && space == data_->space &&
+                        lengthUnit == data_->lengthUnit;
+    if (isSame) return *this;
+    VolumeData data = *data_;
+    data.worldFromIndex = worldFromIndex;
+    data.space = std::move(space);
+    data.lengthUnit = std::move(lengthUnit);
+    return Volume(std::move(data));
+}
+
+Volume Volume::withLabels(std::shared_ptr<const LabelList> labels) const {
+    VolumeData data = *data_;
+    data.labels = std::move(labels);
+    return Volume(std::move(data));
+}
+
+Volume Volume::withoutCodes() const {
+    VolumeData data = *data_;
+    data.codes.reset();
+    data.uncut.reset();
+    return Volume(std::move(data));
+}
+
+Volume Volume::withoutVoxels() const {
+    VolumeData data = *data_;
+    data.codes.reset();
+    data.uncut.reset();
+    data.source.reset();
+    return Volume(std::move(data));
+}
+
+Volume volumeOfFile(const std::string& where, VolumeData data) {
+    requireSound(data, where, ErrorCode::kInput);
+    return Volume(std::move(data));
+}
 
 void requireFiniteSpan(const std::string& where, double low, double high) {
     if (std::isfinite(high - low)) return;
@@ -38,7 +125,7 @@ void requireFloatNan(double nanValue) {
                 "a value that is finite as float");
 }
 
-void summarize(Volume& volume) {
+void summarize(VolumeData& volume) {
     volume.activeCount = 0;
     volume.valueMin = volume.valueMax = 0;
     for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
@@ -52,10 +139,10 @@ void summarize(Volume& volume) {
     if (volume.activeCount > 0) volume.mostFrequent = mostFrequentCode(volume);
 }
 
-void warnOfCodeError(const std::string& where, const Volume& volume, const ReadOptions& options,
+void warnOfCodeError(const std::string& where, const VolumeData& volume, const ReadOptions& options,
                      const Listener& listener) {
     constexpr double kWorthSaying = 1e-3;
-    // Who keeps the source has its values.
+    // A caller who keeps the source has the exact values.
     if (options.keepSource && !options.bits) return;
     if (!(volume.codeError.relative > kWorthSaying)) return;
     char percent[32];
@@ -67,12 +154,12 @@ void warnOfCodeError(const std::string& where, const Volume& volume, const ReadO
 
 namespace {
 
-// @param valueOf  of what the tree holds for an active voxel
+// @param valueOf  value of a stored active voxel
 template <typename Tree, typename ValueOf>
 void readTree(const Tree& tree, const Volume& volume, const IndexBox& box, const ValueOf& valueOf,
               std::span<double> values, std::span<std::uint8_t> active) {
     const glm::ivec3 dims = box.dims();
-    const double background = volume.hasBackground ? volume.background : 0;
+    const double background = volume.hasBackground() ? volume.background() : 0;
     const auto rows = std::size_t(dims.y) * std::size_t(dims.z);
     parallelForChunks(rows, [&](std::size_t begin, std::size_t end) {
         openvdb::tree::ValueAccessor<const Tree> accessor(tree);
@@ -113,19 +200,19 @@ void readVoxels(const Volume& volume, const IndexBox& box, std::span<double> val
     requireSize("values", values.size());
     if (!active.empty()) requireSize("active", active.size());
     if (voxels == 0) return;
-    if (volume.source) {
-        const bool isScalar = volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
+    if (volume.source()) {
+        const bool isScalar = volume.source()->grid.apply<ScalarTrees>([&](const auto& tree) {
             readTree(
                 tree, volume, box, [](auto value) { return double(value); }, values, active);
         });
         if (!isScalar) {
-            throw Error(ErrorCode::kUsage, "voxels to read", "type " + volume.source->grid.type(),
+            throw Error(ErrorCode::kUsage, "voxels to read", "type " + volume.source()->grid.type(),
                         "a scalar grid");
         }
-    } else if (volume.codes) {
+    } else if (volume.codes()) {
         readTree(
-            volume.codes->tree(), volume, box,
-            [&](Code code) { return volume.codeBook.valueOf(code); }, values, active);
+            volume.codes()->tree(), volume, box,
+            [&](Code code) { return volume.codeBook().valueOf(code); }, values, active);
     } else {
         throw Error(ErrorCode::kUsage, "voxels to read", "a volume without voxels",
                     "one that was read or made");
@@ -133,38 +220,43 @@ void readVoxels(const Volume& volume, const IndexBox& box, std::span<double> val
 }
 
 std::optional<double> guessBackground(const Volume& volume) {
-    if (volume.hasBackground) return volume.background;
+    if (volume.hasBackground()) return volume.background();
     if (volume.empty()) return std::nullopt;
-    const FrequentValue most = volume.mostFrequent.value_or(mostFrequentCode(volume));
-    if (double(most.count) < kBackgroundShare * double(volume.activeCount)) return std::nullopt;
+    const FrequentValue most = volume.mostFrequent().value_or(mostFrequentCode(volume));
+    if (double(most.count) < kBackgroundShare * double(volume.activeCount())) return std::nullopt;
     return most.value;
 }
 
-FrequentValue mostFrequentCode(const Volume& volume) {
+FrequentValue mostFrequentCode(const VolumeData& volume) {
+    if (volume.histogram.empty()) return {volume.valueMin, 0};
     const auto most = std::max_element(volume.histogram.begin(), volume.histogram.end());
     return {volume.codeBook.valueOf(Code(most - volume.histogram.begin())), *most};
 }
 
+FrequentValue mostFrequentCode(const Volume& volume) {
+    return mostFrequentCode(volume.data());
+}
+
 ValueHistogram histogramOfValues(const Volume& volume, int bins) {
-    ValueHistogram result{volume.valueMin, volume.valueMax, {}};
+    ValueHistogram result{volume.valueMin(), volume.valueMax(), {}};
     result.counts.assign(bins, 0);
-    if (volume.codeBook.kind == CodeBook::Kind::kInteger) {
-        const double values = volume.valueMax - volume.valueMin + 1;
+    if (volume.codeBook().kind == CodeBook::Kind::kInteger) {
+        const double values = volume.valueMax() - volume.valueMin() + 1;
         result.high = result.low + bins * std::ceil(values / bins);
     }
     const double width = (result.high - result.low) / bins;
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-        if (volume.histogram[code] == 0) continue;
-        const double value = volume.codeBook.valueOf(Code(code));
-        // Codes may be a little outside of the values.
+    for (std::size_t code = 0; code < volume.histogram().size(); ++code) {
+        if (volume.histogram()[code] == 0) continue;
+        const double value = volume.codeBook().valueOf(Code(code));
+        // Codes may lie slightly outside of the values.
         const double bin = width > 0 ? std::max(0.0, (value - result.low) / width) : 0;
-        result.counts[std::min(int(bin), bins - 1)] += volume.histogram[code];
+        result.counts[std::min(int(bin), bins - 1)] += volume.histogram()[code];
     }
     return result;
 }
 
 Code percentileCode(std::span<const std::uint64_t> counts, int percent) {
-    // In two parts, so that 2^62 voxels do not overflow.
+    // Split, so that 2^62 voxels do not overflow.
     const std::uint64_t total = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
     const std::uint64_t wanted = total / 100 * percent + (total % 100 * percent + 99) / 100;
     const std::uint64_t rank = std::max<std::uint64_t>(1, wanted);
@@ -175,10 +267,10 @@ Code percentileCode(std::span<const std::uint64_t> counts, int percent) {
 }
 
 double percentileValue(const Volume& volume, int percent) {
-    if (volume.empty()) return volume.background;
-    // A code may be a little beyond all values that it stands for.
-    const double value = volume.codeBook.valueOf(percentileCode(volume.histogram, percent));
-    return std::clamp(value, volume.valueMin, volume.valueMax);
+    if (volume.empty()) return volume.background();
+    // A code may lie slightly beyond all of its values.
+    const double value = volume.codeBook().valueOf(percentileCode(volume.histogram(), percent));
+    return std::clamp(value, volume.valueMin(), volume.valueMax());
 }
 
 }  // namespace deltasplat

@@ -60,7 +60,7 @@ void BlockLooks::endBlock(std::size_t part) {
     std::copy_n(&block_[7 * 64], 64, before_[part].begin());
 }
 
-// Nothing is seen where there are no voxels: values beside them may say otherwise.
+// Outside of the box nothing is visible, whatever the values beside it suggest.
 void BlockLooks::keepInBox(const glm::ivec3& position, std::span<ClassIndex, 512> classes) const {
     const glm::ivec3 first = 8 * position;
     const glm::ivec3 last = first + 7;
@@ -75,15 +75,14 @@ void BlockLooks::keepInBox(const glm::ivec3& position, std::span<ClassIndex, 512
 
 namespace {
 
-// Half the difference of the values on both sides, or all of that to the one that is there; NaN
-// where nothing is.
+// Half the difference across `here`, or that to the only neighbour; NaN without a value.
 inline float centralDifference(float before, float here, float after) {
     const bool hasBefore = before == before;
     const bool hasAfter = after == after;
     const float first = hasBefore ? before : here;
     const float last = hasAfter ? after : here;
     const float share = hasBefore && hasAfter ? 0.5f : 1.0f;
-    const float nothing = here - here;  // or 0
+    const float nothing = here - here;  // 0 or NaN
     return (last - first) * share + nothing;
 }
 
@@ -111,7 +110,7 @@ std::span<const BlockField> GradientReader::read(const CodeBlock& block) {
     return fields_;
 }
 
-// Fills an array of each field with what take(rim, out) takes of the block and a rim around it.
+// Fills an array per field with take(rim, out) of the block and a rim around it.
 template <typename Take, typename ArrayOf>
 void GradientReader::fill(const Take& take, const ArrayOf& arrayOf) {
     if (!parts_.divides()) return take(0, arrayOf(fields_.front()).data());
@@ -134,7 +133,7 @@ void GradientReader::readValues(const CodeBlock& block) {
     }
 }
 
-// Reads what the rim has of a block on one side of its own (each component -1, 0 or 1).
+// Reads the rim's part of the block on one side (each component -1, 0 or 1).
 void GradientReader::readPart(const CodeBlock* block, const glm::ivec3& side) {
     glm::ivec3 first, last;
     for (int i = 0; i < 3; ++i) {
@@ -162,7 +161,6 @@ void GradientReader::readPart(const CodeBlock* block, const glm::ivec3& side) {
     forAll([&](int n) { return leaf->isValueOn(openvdb::Index(n)) ? ofCode[codes[n]] : nothing; });
 }
 
-// Reads the part from `first` to `last` of a block's slots.
 void GradientReader::readSlots(const ShortSlot* slots, const glm::ivec3& side,
                                const glm::ivec3& first, const glm::ivec3& last) {
     const float nothing = scale_.background.value_or(std::numeric_limits<float>::quiet_NaN());
@@ -179,7 +177,7 @@ void GradientReader::readSlots(const ShortSlot* slots, const glm::ivec3& side,
     }
 }
 
-// Differences along an axis, (slice, u, v) order, of the block's voxels and a rim of theirs.
+// Differences along an axis of (slice, u, v), for the block and a rim.
 void GradientReader::takeDifferences(int axis, int rim, float* out) const {
     constexpr int kStrides[] = {kSide * kSide, kSide, 1};
     const int stride = kStrides[axis];
@@ -195,7 +193,6 @@ void GradientReader::takeDifferences(int axis, int rim, float* out) const {
     }
 }
 
-// Values of the block's voxels and a rim of theirs.
 void GradientReader::takeValues(int rim, float* out) const {
     const int side = 8 + 2 * rim;
     const int first = kRim - rim;

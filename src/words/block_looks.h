@@ -17,24 +17,22 @@
 
 namespace deltasplat {
 
-/// Takes the gradients of a volume block by block, as central differences: half of what a value
-/// grows from the voxel before to the one behind. Where only one of them is there, it is the
-/// difference to that one; where none is, 0. Those of divided voxels are mixed as values are
-/// (ValueMixer), which is what differences of mixed values would be. Not for several threads at
-/// once.
+/// Reads the gradients of a volume block by block, as central differences: half the change from the
+/// voxel before to the voxel behind. At a voxel with only one neighbour, the difference to that
+/// neighbour; without neighbours, 0. Gradients of divided voxels are mixed like values
+/// (ValueMixer), which equals differences of mixed values. Not thread-safe.
 class GradientReader {
   public:
-    /// @param scale  must outlive the reader, as `codes`
+    /// @param codes,scale  must outlive the reader
     GradientReader(const CodeTree& codes, int sliceAxis, const Subdivision& parts,
                    const GradientScale& scale);
 
-    /// Returns the gradients of a block, and its values if they are wanted, or those of all that it
-    /// becomes:
-    /// `[parts.within along u][parts.slices][parts.within along v]`.
+    /// Returns the gradients of a block, or of the blocks that it is divided into, with values if
+    /// the scale wants them: `[parts.within along u][parts.slices][parts.within along v]`.
     std::span<const BlockField> read(const CodeBlock& block);
 
   private:
-    // Of a block, two voxels around it: gradients are mixed from those of neighbours.
+    // Two voxels around a block, because gradients are mixed from those of neighbours.
     static constexpr int kRim = 2;
     static constexpr int kSide = 8 + 2 * kRim;
 
@@ -51,38 +49,37 @@ class GradientReader {
     int sliceAxis_;
     Subdivision parts_;
     const GradientScale& scale_;
-    std::array<float, kSide * kSide * kSide> values_;  // [slice][u][v], NaN where nothing is
+    std::array<float, kSide * kSide * kSide> values_;  // [slice][u][v], NaN without a value
     std::vector<BlockField> fields_;
 };
 
-/// Looks that voxels have of their own, of one block after the other of a column: those of the
-/// block in hand, and what the slice before it had. A block may be divided; each of what it becomes
-/// is painted by itself.
+/// Own looks of the voxels of a column, block by block: the looks of the current block, and those
+/// of the slice before it. Each part of a divided block is painted by itself.
 class BlockLooks {
   public:
     using Slice = std::array<OwnLook, 64>;
 
-    /// @param box    of all voxels that there are, (slice, u, v), thin ones if they are divided
-    /// @param codes  of the volume; must outlive this, as the painter
+    /// @param box            of all voxels, (slice, u, v); of thin voxels if they are divided
+    /// @param painter,codes  must outlive this object
     BlockLooks(const VoxelPainter& painter, const CodeTree& codes, int sliceAxis,
                const Subdivision& parts, const IndexBox& box);
 
-    /// Forgets what was before.
+    /// Forgets the slice before.
     void beginColumn();
     void beginBlock(const CodeBlock& block);
-    /// Paints the voxels of the block in hand, or of one that it becomes.
-    /// @param position  of that, (slice, u, v) / 8
-    /// @param number    of that, as GradientReader counts
-    /// @param classes   changed if the painter chooses them
+    /// Paints the voxels of the current block, or of one of its parts.
+    /// @param position  of this block or part, (slice, u, v) / 8
+    /// @param number    of the part, in GradientReader's order
+    /// @param classes   changed if the painter chooses classes
     void paint(const glm::ivec3& position, int number, std::span<ClassIndex, 512> classes);
 
-    /// [slice][u][v]: of what was painted last.
+    /// [slice][u][v]: the looks painted last.
     std::array<OwnLook, 512>& block() { return block_; }
-    /// Of a part of the column: what voxels go on as.
+    /// The looks that the voxels of a part of the column currently hold.
     Slice& held(std::size_t part) { return held_[part]; }
-    /// Adds to changes where what is seen has another look than in the slice before.
+    /// Marks visible voxels as changed if their look differs from the slice before.
     void compare(std::size_t part, BlockChanges& changes) const;
-    /// Takes the last slice for what comes before the next block.
+    /// Keeps the last slice for the comparison with the next block.
     void endBlock(std::size_t part);
 
   private:
@@ -93,9 +90,9 @@ class BlockLooks {
     IndexBox box_;
     std::optional<GradientReader> reader_;
     const CodeBlock* inHand_ = nullptr;
-    std::span<const BlockField> fields_;  // of it, once they are asked for
+    std::span<const BlockField> fields_;  // of the current block, read on demand
     std::array<OwnLook, 512> block_{};
-    std::array<Slice, 4> before_{};  // [part]: of the slice before it
+    std::array<Slice, 4> before_{};  // [part]: the slice before
     std::array<Slice, 4> held_{};    // [part]
 };
 

@@ -15,7 +15,6 @@
 namespace deltasplat {
 namespace {
 
-// Looks of voxels of their own, if there is a painter.
 std::optional<BlockLooks> looksOf(const SourceTools& tools, const Subdivision& parts) {
     const PackOptions& options = tools.options;
     if (!options.painter) return {};
@@ -23,19 +22,18 @@ std::optional<BlockLooks> looksOf(const SourceTools& tools, const Subdivision& p
                                      options.sliceAxis, parts, tools.box);
 }
 
-// Makes classes of slots: those that voxels have, or what they go on as.
+// Makes classes of true or held slots.
 class Classifier {
   public:
     Classifier(const SourceTools& tools, std::optional<BlockLooks>& looks)
         : holder_(tools.holder), looksHold_(tools.options.looksHold), looks_(looks) {}
 
     void beginColumn() { held_ = {}; }
-    // Forgets what the voxels of a column's part go on as.
     void forget(std::size_t part) { held_[part].fill(kEmptySlot); }
     bool holds() const { return holder_ != nullptr; }
 
-    // @param part    of the column: what was before is kept for each
-    // @param number  of what the block in hand becomes
+    // @param part    of the column; each part holds its own slots
+    // @param number  of the divided block's part
     void classify(const BlockSlots& slots, const glm::ivec3& position, std::size_t part, int number,
                   BlockClasses& classes) {
         if (!holder_) {
@@ -51,7 +49,7 @@ class Classifier {
     }
 
   private:
-    // Slot and look are held together: each has to allow it.
+    // Holds slot and look together; both must allow it.
     [[gnu::noinline]] void holdLooks(const BlockSlots& slots, const glm::ivec3& position,
                                      std::size_t part, int number, BlockClasses& classes) {
         HeldSlots& before = held_[part];
@@ -80,7 +78,7 @@ class Classifier {
     std::array<HeldSlots, 4> held_{};  // [part]
 };
 
-// What sources have in common: a classifier, looks, and the classes of the block in hand.
+// Shared by sources: a classifier, looks, and the classes of the current block.
 class ClassifiedBlocks : public BlockSource {
   public:
     BlockLooks* looks() override { return looks_ ? &*looks_ : nullptr; }
@@ -100,7 +98,7 @@ class ClassifiedBlocks : public BlockSource {
     BlockClasses classes_{};
 };
 
-// Blocks as they are.
+// Undivided blocks.
 class WholeBlocks : public ClassifiedBlocks {
   public:
     explicit WholeBlocks(const SourceTools& tools)
@@ -125,7 +123,6 @@ class WholeBlocks : public ClassifiedBlocks {
     BlockSlots slots_{};
 };
 
-// Values around a block, of a tree.
 struct Window {
     Window(const CodeTree& codes, int sliceAxis, bool alongSlicesOnly)
         : reader(codes, sliceAxis, alongSlicesOnly) {}
@@ -134,7 +131,7 @@ struct Window {
     MixWindow window;
 };
 
-// Blocks whose voxels are divided, with values mixed from those around.
+// Divided blocks with interpolated values.
 class MixedBlocks : public ClassifiedBlocks {
   public:
     explicit MixedBlocks(const SourceTools& tools)
@@ -166,16 +163,15 @@ class MixedBlocks : public ClassifiedBlocks {
           tools_(tools),
           values_(*tools.codes, tools.options.sliceAxis, alongSlicesOnly) {}
 
-    // Makes ready what the block becomes, something of which may be seen.
+    // Prepares the parts of a block, of which some may be visible.
     virtual void mix(const CodeBlock&, const WordWriter&) {
         tools_.options.mixer->mix(values_.window, *tools_.mixMap, mixed_);
     }
-    // Makes the classes of one of the blocks, and their looks.
+    // Makes the classes and looks of a part.
     virtual void classify(const glm::ivec3& position, int number, std::size_t part) {
         classifier_.classify(mixed_[std::size_t(number)], position, part, number, classes_);
     }
-    // Calls use(position, number, part of the column, row, slices) for the blocks that a block
-    // becomes, but for those outside of the box: it may begin and end within a block.
+    // Calls use(position, number, part of column, row, slices) for a block's parts in the box.
     template <typename Use>
     void forBlocks(const CodeBlock& block, const WordWriter& writer, const Use& use) const {
         const Subdivision& parts = divided().parts;
@@ -199,7 +195,7 @@ class MixedBlocks : public ClassifiedBlocks {
     std::vector<BlockSlots> mixed_;  // [part along u][along slices][along v]
 };
 
-// Blocks whose classes a painter chooses, by what lies around: those of surfaces.
+// Blocks whose classes a painter chooses from the neighbourhood: those of surfaces.
 class PaintedBlocks : public MixedBlocks {
   public:
     explicit PaintedBlocks(const SourceTools& tools) : MixedBlocks(tools, false) {
@@ -240,16 +236,15 @@ class PaintedBlocks : public MixedBlocks {
 
     const VoxelPainter& painter() const { return *tools_.options.painter; }
 
-    // The undivided voxel, counted from the block's first, of a part's voxel.
-    // @param first  of the part's voxels, counted likewise, as parts
+    // Returns the undivided voxel, relative to the block, of a part's voxel.
+    // @param first  the part's first voxel, relative to the block, in divided voxels
     glm::ivec3 placeOf(const glm::ivec3& first, int voxel) const {
         const Subdivision& parts = divided().parts;
         return (first + glm::ivec3(voxel / 64, voxel / 8 % 8, voxel % 8)) /
                glm::ivec3(parts.slices, parts.within, parts.within);
     }
 
-    // Lets voxels that are seen for themselves be what they are, if nothing that they become is
-    // inside, or so near to it that most of it is seen.
+    // Shows visible voxels undivided if none of their parts is inside of the surface or near to it.
     void keepSeen() {
         constexpr int kNearSurface = OwnLook::kAll / 16;
         const int surface = painter().heightOfSurface();
@@ -272,8 +267,7 @@ class PaintedBlocks : public MixedBlocks {
         }
     }
 
-    // Clears what was painted by values that were cut off: voxels that are not active any more, or
-    // never were and have nothing left beside them.
+    // Clears voxels that only cut values painted: cut, or inactive without active neighbours.
     void clearCutOff(const glm::ivec3& first) {
         for (int n = 0; n < 512; ++n) {
             if (classes_[std::size_t(n)] == 0) continue;
@@ -284,8 +278,7 @@ class PaintedBlocks : public MixedBlocks {
         }
     }
 
-    // Whether the volume ends, or is cut, beside a voxel: where what is not active has a value,
-    // values go on.
+    // Whether the volume ends or is cut beside a voxel. Inactive voxels with a value are no end.
     bool isAtEnd(const glm::ivec3& place) const {
         const GradientScale* scale = painter().gradientScale();
         const bool endsThere = !scale || !scale->background;
@@ -298,8 +291,7 @@ class PaintedBlocks : public MixedBlocks {
         return false;
     }
 
-    // Lets all be seen of what is inside and at an end: lines of sight that come in there have not
-    // met its surface.
+    // Makes inside voxels at an end fully visible: lines of sight enter there without a surface.
     void closeEnds(const glm::ivec3& first) {
         const int surface = painter().heightOfSurface();
         for (int n = 0; n < 512; ++n) {
@@ -309,8 +301,8 @@ class PaintedBlocks : public MixedBlocks {
         }
     }
 
-    std::optional<Window> uncut_;        // what was there before, if surfaces are cut
-    std::vector<PaintedBlock> painted_;  // as MixedBlocks has its blocks
+    std::optional<Window> uncut_;        // the volume before the cut, if surfaces are cut
+    std::vector<PaintedBlock> painted_;  // in the order of mixed_
 };
 
 }  // namespace

@@ -17,25 +17,23 @@ namespace deltasplat {
 class MixedSight;
 class SlotHolder;
 
-/// What sources read with. Null: there is none.
+/// Inputs of sources. Members that do not apply are null.
 struct SourceTools {
     const PackOptions& options;
     std::span<const Slot> slotMap;
-    IndexBox box;                        ///< of what voxels are divided into, (slice, u, v)
-    const ClassRamps* ramps = nullptr;   ///< of the map
-    const SlotHolder* holder = nullptr;  ///< of voxels that go on as what they were
+    IndexBox box;                        ///< of voxels after division, (slice, u, v)
+    const ClassRamps* ramps = nullptr;   ///< of the slot map
+    const SlotHolder* holder = nullptr;  ///< if voxels are held
     const MixedSight* sight = nullptr;   ///< with a mixer
-    const CodeTree* codes = nullptr;     ///< that values are mixed from
-    const CodeTree* uncut = nullptr;     ///< that gradients are taken of
-    const MixMap* mixMap = nullptr;      ///< with a mixer, of the map
+    const CodeTree* codes = nullptr;     ///< for mixing values
+    const CodeTree* uncut = nullptr;     ///< for gradients
+    const MixMap* mixMap = nullptr;      ///< of the slot map, with a mixer
 };
 
-/// Where the blocks lie that a block becomes where voxels are divided: parts of a column along u
-/// and v, and slices of it.
+/// Places of the parts of a divided block: along the slices, u and v.
 struct DividedBlock {
     Subdivision parts;
 
-    /// Returns the position of a block's first part.
     glm::ivec3 first(const CodeBlock& block) const {
         return (block.position - parts.origin / 8) *
                glm::ivec3(parts.slices, parts.within, parts.within);
@@ -46,23 +44,21 @@ struct DividedBlock {
         for (int u = 0; u < parts.within; ++u)
             for (int v = 0; v < parts.within; ++v) use(glm::ivec2(u, v));
     }
-    /// The number of a part of a column.
     static std::size_t numberOf(const glm::ivec2& part) { return std::size_t(2 * part.x + part.y); }
 };
 
-/// Reads blocks of a column, one after the other, as classes, and gives them to a writer: each, or
-/// the blocks that it becomes. Not for several threads at once.
+/// Reads a column's blocks in order and passes each, or its parts, to a writer. Not thread-safe.
 class BlockSource {
   public:
     virtual ~BlockSource() = default;
 
-    /// Forgets what voxels go on as.
+    /// Forgets the classes that voxels hold.
     virtual void beginColumn() = 0;
     virtual void read(const CodeBlock& block, WordWriter& writer) = 0;
-    /// Looks that voxels have of their own; null: classes say all.
+    /// Own looks of voxels, or null if classes are sufficient.
     virtual BlockLooks* looks() = 0;
     const DividedBlock& divided() const { return divided_; }
-    /// Whether it reads blocks around those that it is given.
+    /// Whether the source also reads neighbours of the blocks that it gets.
     bool readsAround() const { return readsAround_; }
 
   protected:
@@ -74,10 +70,10 @@ class BlockSource {
     bool readsAround_;
 };
 
-/// Whether a painter chooses the classes of voxels, by what lies around them.
+/// Whether a painter chooses the classes of voxels from their neighbourhood.
 bool choosesClasses(const PackOptions& options);
 
-/// @param tools  what it refers to must outlive the source
+/// @param tools  its pointers and references must outlive the source
 std::unique_ptr<BlockSource> makeSource(const SourceTools& tools);
 
 }  // namespace deltasplat

@@ -30,7 +30,7 @@ void ClassReader::read(const CodeBlock& block, std::span<T, 512> out) const {
 template void ClassReader::read(const CodeBlock&, std::span<ClassIndex, 512>) const;
 template void ClassReader::read(const CodeBlock&, std::span<Slot, 512>) const;
 
-// Does so by vectors if the map is a ramp over the codes of the block. Returns whether it is.
+// Reads by vectors if the map is a ramp over the block's codes. Returns whether it is.
 bool ClassReader::readRamp(const CodeBlock& block, std::span<ClassIndex, 512> out) const {
     if (!ramps_ || (!block.slots && !block.leaf)) return false;
     const std::optional<ClassRamp> ramp = ramps_->of(block.lowest, block.highest);
@@ -52,9 +52,9 @@ constexpr std::size_t kMostInTable = 512;
 
 SlotHolder::SlotHolder(const Volume& volume, const PackOptions& options) : options_(options) {
     std::vector<Slot> slots{kEmptySlot};
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
+    for (std::size_t code = 0; code < volume.histogram().size(); ++code) {
         const Slot slot = Slot(code + 1);
-        if (volume.histogram[code] != 0 && options.classOfSlot[slot] != kEmptySlot)
+        if (volume.histogram()[code] != 0 && options.classOfSlot[slot] != kEmptySlot)
             slots.push_back(slot);
     }
     numberOf_.resize(kSlotCount);

@@ -13,11 +13,11 @@
 
 namespace deltasplat {
 
-/// Reads what the voxels of blocks are under a map of slots.
+/// Maps the voxels of blocks to classes or other slots.
 class ClassReader {
   public:
-    /// @param slotMap  [kSlotCount]; must outlive this, as must
-    /// @param ramps    of the map; null: not known
+    /// @param slotMap  [kSlotCount]; must outlive this object
+    /// @param ramps    of the map, or null; must outlive this object
     ClassReader(std::span<const Slot> slotMap, const ClassRamps* ramps, int sliceAxis)
         : slotMap_(slotMap), ramps_(ramps), sliceAxis_(sliceAxis) {}
 
@@ -25,7 +25,7 @@ class ClassReader {
     int sliceAxis() const { return sliceAxis_; }
 
     /// @param out  [slice][u][v]
-    /// @tparam T   ClassIndex or Slot, which holds what the map has
+    /// @tparam T   ClassIndex or Slot, wide enough for the map
     template <typename T>
     void read(const CodeBlock& block, std::span<T, 512> out) const;
 
@@ -37,9 +37,8 @@ class ClassReader {
     int sliceAxis_;
 };
 
-/// Says what voxels go on as that are held along the slice axis. Slots that are seen are numbered,
-/// 0 for all others; what a voxel goes on as is looked up if there are few of them, and asked for
-/// otherwise. Thread-safe.
+/// Decides which slot a voxel holds along the slice axis, by a table or, for many slots, by asking
+/// `holds`. Numbers visible slots; others are 0. Thread-safe.
 class SlotHolder {
   public:
     /// @param options  with `holds`; must outlive the holder
@@ -48,26 +47,26 @@ class SlotHolder {
     /// Returns the number of each slot, [kSlotCount].
     std::span<const Slot> numberOfSlot() const { return numberOf_; }
     ClassIndex classOf(Slot number) const { return classOf_[number]; }
-    /// Whether a voxel may go on as another slot, of the same class or not.
+    /// Whether a voxel may hold another slot, of the same class or not.
     bool allows(Slot held, Slot slot) const {
         return held != 0 && slot != 0 && options_.holds(slots_[held], slots_[slot]);
     }
-    /// Returns what a voxel goes on as.
+    /// Returns the slot number that a voxel holds next.
     Slot next(Slot held, Slot slot) const {
         return next_.empty() ? ask(held, slot)
                              : next_[std::size_t(held) * slots_.size() + std::size_t(slot)];
     }
 
   private:
-    // Slots of one class need no tolerance: the later one goes on.
+    // Within a class there is nothing to tolerate, so the voxel takes its true slot.
     Slot ask(Slot held, Slot slot) const {
         return classOf_[held] != classOf_[slot] && allows(held, slot) ? held : slot;
     }
 
     const PackOptions& options_;
     std::vector<Slot> numberOf_;
-    std::vector<Slot> slots_;          // by number
-    std::vector<ClassIndex> classOf_;  // likewise
+    std::vector<Slot> slots_;          // [number]
+    std::vector<ClassIndex> classOf_;  // [number]
     std::vector<std::uint16_t> next_;  // [held][slot], or empty
 };
 

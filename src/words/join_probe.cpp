@@ -19,14 +19,14 @@
 namespace deltasplat {
 namespace {
 
-constexpr int kSlabsBeside = 16;         // before and behind what lines of sight are seen at
-constexpr int kTries = 64;               // to find each
-constexpr int kSquares = 5;              // of a patch, along u and along v, that voxels become
-constexpr double kOpaque = 1 - 0x1p-10;  // what is behind makes no difference
+constexpr int kSlabsBeside = 16;         // slabs before and behind the patch
+constexpr int kTries = 64;               // per patch
+constexpr int kSquares = 5;              // joined voxels of a patch, along u and v
+constexpr double kOpaque = 1 - 0x1p-10;  // hides everything behind
 
-// What the lines of a patch see, on average.
+// Mean light of a patch's lines.
 struct Seen {
-    glm::dvec4 single{0.0};  // of voxels as they are
+    glm::dvec4 single{0.0};  // of separate voxels
     glm::dvec4 joined{0.0};
 };
 
@@ -38,8 +38,7 @@ double largestOf(const glm::dvec4& light) {
     return std::max({light.r, light.g, light.b, light.a});
 }
 
-// Returns a voxel (slice, u, v) of a block that is seen, one of all at random; empty: there is
-// none.
+// Returns a random visible voxel (slice, u, v) of a block, if there is one.
 std::optional<glm::ivec3> anySeen(const CodeBlock& block, const ClassReader& classes,
                                   std::size_t random) {
     std::array<ClassIndex, 512> all;
@@ -55,7 +54,6 @@ std::optional<glm::ivec3> anySeen(const CodeBlock& block, const ClassReader& cla
     return {};
 }
 
-// First and last of some numbers.
 struct Range {
     int first;
     int last;
@@ -63,18 +61,17 @@ struct Range {
 
 }  // namespace
 
-// Eight slices of what lies about lines of sight: of each block few voxels are read.
+// Eight slices around lines of sight. Reads single voxels, because few per block are needed.
 class JoinProbe::Layer {
   public:
-    // @param sliceAxis  of the slices, whichever way blocks are listed
+    // @param sliceAxis  of the lines; blocks may be listed along another
     Layer(const JoinProbe& probe, int sliceAxis)
         : probe_(probe),
           sliceAxis_(sliceAxis),
           leafStrides_(toSliceOrder(kLeafStride, sliceAxis)),
           slotStrides_(toSliceOrder(fromSliceOrder({64, 8, 1}, probe.sliceAxis_), sliceAxis)) {}
 
-    // Finds the blocks of slices from 8 * number on that have voxels (u, v) from `first` to `last`.
-    // Returns whether there are any.
+    // Finds layer `number`'s blocks at (u, v) from `first` to `last`. Returns whether any exist.
     bool find(int number, const glm::ivec2& first, const glm::ivec2& last) {
         first_ = first >> 3;
         size_ = (last >> 3) - first_ + 1;
@@ -92,7 +89,7 @@ class JoinProbe::Layer {
         return hasAny;
     }
 
-    // @param at  (slice, u, v), of a block that was looked for
+    // @param at  (slice, u, v) in a block of find()
     ClassIndex classOf(const glm::ivec3& at) const {
         const CodeBlock* const block = blocks_[placeOf(glm::ivec2(at.y >> 3, at.z >> 3) - first_)];
         if (!block) return 0;
@@ -119,19 +116,18 @@ class JoinProbe::Layer {
 
     const JoinProbe& probe_;
     int sliceAxis_;
-    glm::ivec3 leafStrides_;  // from voxel to voxel of a block, along the slices, u and v
+    glm::ivec3 leafStrides_;  // of a leaf's voxels along the slices, u and v
     glm::ivec3 slotStrides_;
     glm::ivec2 first_{0};
     glm::ivec2 size_{0};
     std::vector<const CodeBlock*> blocks_;
 };
 
-// Follows the lines of sight of one patch from the front on: those of the base plane's pixels,
-// which lie a voxel from each other, and those of squares.
+// Follows a patch's lines of sight from the front: pixels one voxel apart, and squares.
 class JoinProbe::Tracer {
   public:
-    // @param through  voxel (slice, u, v) that the patch is laid around
-    // @param part     where in the patch, 0 to 1 each
+    // @param through  voxel (slice, u, v) in the patch
+    // @param part     place of the voxel in the patch, 0 to 1 each
     Tracer(const JoinProbe& probe, const SightLines& lines, const JoinedVoxels& joined,
            const glm::ivec3& through, const glm::dvec2& part)
         : lines_(lines),
@@ -140,14 +136,14 @@ class JoinProbe::Tracer {
           layer_(probe, lines.sliceAxis),
           single_(kSquares * joined.within),
           squares_(kSquares + 1) {
-        // What the voxel becomes a part of lies in the patch as well.
+        // Keeps the voxel's joined square inside of the patch.
         constexpr double kBeside = 1.5;
         const glm::dvec2 base =
             glm::dvec2(through.y, through.z) + double(through.x) * lines.shiftPerSlice;
         const glm::dvec2 first =
             base / double(joined.within) - (kBeside + (kSquares - 2 * kBeside) * part);
         firstSquare_ = glm::floor(first + 0.5);
-        // Squares lie beside the patch by a part of one: at both ends some count in part.
+        // Joined squares are shifted against the patch, so those at both ends count in part.
         const glm::dvec2 moved =
             middleOfJoined(lines.shiftPerSlice,
                            std::span(slants_).first(std::size_t(joined.slices))) /
@@ -160,7 +156,7 @@ class JoinProbe::Tracer {
             return toSliceOrder(fromSliceOrder(at, probe.sliceAxis_), lines.sliceAxis);
         };
         slices_ = slicesWithin(8 * ordered(probe.first_), 8 * ordered(probe.last_) + 7);
-        // What goes on for longer shows no more of it.
+        // Longer structures show no larger effect.
         const int most = kSlabsBeside * joined.slices;
         slices_ = {std::max(slices_.first, through.x - most),
                    std::min(slices_.last, through.x + most)};
@@ -179,14 +175,14 @@ class JoinProbe::Tracer {
   private:
     using Lights = std::vector<glm::dvec4>;
 
-    // Lines beside each other, as far from each other as what they read.
+    // Neighbouring lines, as far apart as the voxels that they read.
     struct Lines {
         explicit Lines(int ofAxis)
             : count(std::size_t(ofAxis)), sheet(pitch() * pitch()), seen(count * count) {}
 
         std::size_t pitch() const { return count + 1; }
-        // Lets them pass a sheet, which they read between four places.
-        // @param part  of the way from one to the next
+        // Moves the lines through a sheet, with bilinear interpolation.
+        // @param part  position between two voxels
         void pass(const glm::dvec2& part) {
             for (std::size_t u = 0; u < count; ++u) {
                 for (std::size_t v = 0; v < count; ++v) {
@@ -200,8 +196,8 @@ class JoinProbe::Tracer {
             }
         }
 
-        std::size_t count;  // along u and along v
-        Lights sheet;       // [u][v], one more than lines
+        std::size_t count;  // per axis
+        Lights sheet;       // [u][v], one more per axis than lines
         Lights seen;        // [u][v]
     };
 
@@ -211,7 +207,7 @@ class JoinProbe::Tracer {
         return sum / double(lights.size());
     }
 
-    // The same of the patch alone.
+    // Mean within the patch only.
     glm::dvec4 meanOfSquares() const {
         const auto partOf = [&](std::size_t i, int axis) {
             return i == 0 ? partOfFirst_[axis] : i == kSquares ? 1 - partOfFirst_[axis] : 1.0;
@@ -223,13 +219,11 @@ class JoinProbe::Tracer {
         return sum / double(kSquares * kSquares);
     }
 
-    // Where the patch lies on the base plane.
     glm::dvec2 firstLine() const { return double(joined_.within) * firstSquare_; }
     glm::dvec2 lastLine() const { return firstLine() + double(kSquares * joined_.within); }
-    // How far beside it lies what is read for it.
     int reach() const { return 3 * joined_.within; }
 
-    // Returns the slices in which lines pass voxels from `first` to `last`, (slice, u, v).
+    // Returns the slices in which the lines cross voxels `first` to `last`, (slice, u, v).
     Range slicesWithin(const glm::ivec3& first, const glm::ivec3& last) const {
         double least = first.x, most = last.x;
         for (int axis = 0; axis < 2; ++axis) {
@@ -243,7 +237,7 @@ class JoinProbe::Tracer {
         return {int(std::floor(least)), int(std::ceil(std::max(most, least)))};
     }
 
-    // Makes the layer that a slice lies in the one that is read. Returns whether it has anything.
+    // Reads the layer of a slice. Returns whether it has voxels.
     bool enter(int slice) {
         const int number = slice >> 3;
         if (number == number_) return hasAny_;
@@ -303,7 +297,7 @@ class JoinProbe::Tracer {
         return std::size_t(joined_.within) * std::size_t(joined_.within);
     }
 
-    // Puts a slice behind what becomes one with it.
+    // Puts a slice behind the slices that are joined with it.
     void joinSlice(int slice, const glm::ivec2& slant) {
         const int within = joined_.within;
         const glm::ivec2 first = within * squaresAt_ - slant;
@@ -329,17 +323,17 @@ class JoinProbe::Tracer {
     JoinedVoxels joined_;
     std::array<glm::ivec2, kMostJoined> slants_;
     Layer layer_;
-    glm::dvec2 firstSquare_{0.0};  // of the base plane: a whole number
+    glm::dvec2 firstSquare_{0.0};  // whole position on the base plane
     glm::dvec2 squaresBefore_{0.0};
-    glm::dvec2 partOfFirst_{0.0};  // of squares that lies in the patch, along u and v
+    glm::dvec2 partOfFirst_{0.0};  // share of the first squares inside of the patch
     Range slices_{0, 0};
     int number_ = std::numeric_limits<int>::min();  // of the layer
     bool hasAny_ = false;
     Lines single_;
     Lines squares_;
-    glm::ivec2 squaresAt_{0};  // the first that is read of a slab
+    glm::ivec2 squaresAt_{0};  // first square of the slab
     glm::dvec2 squaresPart_{0.0};
-    Lights slab_;  // of each voxel of each square
+    Lights slab_;  // [square][voxel]
 };
 
 JoinProbe::JoinProbe(std::vector<CodeBlock> blocks, int sliceAxis,
@@ -361,7 +355,6 @@ JoinProbe::JoinProbe(std::vector<CodeBlock> blocks, int sliceAxis,
     }
 }
 
-// Returns the block at a place, or null.
 const CodeBlock* JoinProbe::find(const glm::ivec3& position) const {
     const std::pair wanted(position.y, position.z);
     const auto place = std::lower_bound(columns_.begin(), columns_.end(), wanted);
@@ -381,7 +374,7 @@ std::optional<JoinedChange> JoinProbe::change(const JoinedVoxels& joined,
     const std::size_t count = joined.within == 1 ? 128 : joined.within == 2 ? 96 : 48;
     std::vector<std::optional<Seen>> patches(count);
     parallelFor(count, [&](std::size_t i) {
-        // From every part of the volume as many as it has blocks.
+        // Spreads patches over the volume in proportion to its blocks.
         std::mt19937 random{std::mt19937::result_type(i)};
         const auto part = [&] { return double(random()) * 0x1p-32; };
         for (int tried = 0; tried < kTries && !patches[i]; ++tried) {
@@ -391,7 +384,7 @@ std::optional<JoinedChange> JoinProbe::change(const JoinedVoxels& joined,
             if (!voxel) continue;
             const glm::ivec3 xyz = fromSliceOrder(*voxel, sliceAxis_);
             const SightLines seenBy = lines(xyz);
-            const glm::dvec2 within{part(), part()};  // in this order
+            const glm::dvec2 within{part(), part()};  // evaluated in this order
             patches[i] =
                 Tracer(*this, seenBy, joined, toSliceOrder(xyz, seenBy.sliceAxis), within).trace();
         }
@@ -410,7 +403,7 @@ std::optional<JoinedChange> JoinProbe::change(const JoinedVoxels& joined,
         most = std::max(most, largestOf(patch->single));
         ++found;
     }
-    // Of too few, nothing is known.
+    // Too few patches give no estimate.
     if (4 * found < double(count) || !(most > 0)) return {};
     JoinedChange result;
     result.gained = gained / largestOf(seen);

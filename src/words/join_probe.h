@@ -16,40 +16,36 @@
 
 namespace deltasplat {
 
-/// Lines of sight beside each other.
+/// Parallel neighbouring lines of sight.
 struct SightLines {
     int sliceAxis;
-    bool frontToBack;          ///< as Factorization
-    glm::dvec2 shiftPerSlice;  ///< as Factorization
-    /// Of each class, over a slice: premultiplied RGBA.
+    bool frontToBack;          ///< as in Factorization
+    glm::dvec2 shiftPerSlice;  ///< as in Factorization
+    /// [class]: premultiplied RGBA over a slice.
     std::span<const glm::dvec4> lights;
 };
 
-/// What becomes of light and opacity where slices, and voxels beside each other, become one.
+/// Change of light and opacity by joining slices, and neighbouring voxels within them.
 struct JoinedChange {
-    /// By how much more of each channel there is on average, as a share of the largest; below 0:
-    /// less.
+    /// Mean gain of each channel as a share of the largest channel; negative: loss.
     glm::dvec4 gained{0.0};
-    /// The root of the mean square of what patches gain or lose, of the channel that changes most,
-    /// as a share of the largest channel that any of them has.
+    /// Root mean square change of patches in the worst channel, as a share of the largest channel.
     double rms = 0;
 };
 
-/// Finds out what joining does to what pictures show, by some hundred patches of them: what lines
-/// of sight see of single voxels, and of what these become. It does little to most things. What is
-/// a voxel thin and goes on along lines of sight gets wider where slices lie beside each other that
-/// become one, or narrower.
+/// Estimates how joining changes a picture, from some hundred patches. Most volumes change little.
+/// Structures one voxel thin along the lines of sight can get wider or narrower.
 class JoinProbe {
   public:
-    /// @param blocks       along `sliceAxis`, as listBlocks lists those that can be seen
+    /// @param blocks       visible blocks along `sliceAxis`, as from listBlocks
     /// @param classOfSlot  [kSlotCount]
     JoinProbe(std::vector<CodeBlock> blocks, int sliceAxis, std::span<const Slot> classOfSlot);
 
-    /// Returns the lines of sight that pass a voxel (x, y, z).
+    /// Returns the lines of sight through a voxel (x, y, z).
     using LinesThrough = std::function<SightLines(const glm::ivec3& voxel)>;
 
     /// Deterministic; multi-threaded.
-    /// @return empty: too little is seen to know
+    /// @return nothing if too little is visible for an estimate
     std::optional<JoinedChange> change(const JoinedVoxels& joined, const LinesThrough& lines) const;
 
   private:
@@ -61,9 +57,9 @@ class JoinProbe {
     std::vector<CodeBlock> blocks_;
     int sliceAxis_;
     std::vector<Slot> classOfSlot_;
-    std::vector<std::size_t> begins_;           // of columns among the blocks
-    std::vector<std::pair<int, int>> columns_;  // where they are: u and v
-    glm::ivec3 first_{0};                       // place of blocks, (slice, u, v)
+    std::vector<std::size_t> begins_;           // of columns in blocks_
+    std::vector<std::pair<int, int>> columns_;  // u and v
+    glm::ivec3 first_{0};                       // range of block positions, (slice, u, v)
     glm::ivec3 last_{0};
 };
 

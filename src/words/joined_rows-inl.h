@@ -17,8 +17,8 @@ HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Whether any of eight voxels is seen.
-/// @param first  the place of the first in each slice
+/// Whether any of eight voxels is visible in any slice.
+/// @param first  place of the first voxel in each slice
 HWY_INLINE bool anyClass(const JoinedRows& rows, std::size_t first) {
     const hn::CappedTag<std::uint16_t, 8> tag;
     auto any = hn::Zero(tag);

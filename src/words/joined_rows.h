@@ -7,11 +7,11 @@
 
 namespace deltasplat {
 
-/// Rows of 8x8 voxels of slices that lie one behind the other, as SliceJoiner::join takes them.
+/// Rows of 8x8 voxels in consecutive slices, as for SliceJoiner::join.
 struct JoinedRows {
-    const ClassIndex* const* slices;  ///< [count]: the first voxel in each
+    const ClassIndex* const* slices;  ///< [count]: first voxel of each slice
     std::size_t count;
-    std::size_t pitch;  ///< from row to row
+    std::size_t pitch;  ///< distance of rows
 };
 
 }  // namespace deltasplat

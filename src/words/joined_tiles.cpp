@@ -28,7 +28,7 @@ JoinedTile tileOf(const glm::ivec2& column) {
     return {floorDiv(column.x, kTileColumns.x), floorDiv(column.y, kTileColumns.y)};
 }
 
-// Returns which columns those of so many voxels side by side are read from, counted from the first.
+// Returns the columns that `voxels` neighbouring voxels are read from, relative to their first.
 ColumnRange columnsReadFor(std::span<const glm::ivec2> slants, int voxels) {
     glm::ivec2 down = slants.front();
     glm::ivec2 up = slants.front();
@@ -36,7 +36,7 @@ ColumnRange columnsReadFor(std::span<const glm::ivec2> slants, int voxels) {
         down = glm::min(down, slant);
         up = glm::max(up, slant);
     }
-    // What is moved up comes from a column before.
+    // Voxels that move up come from an earlier column.
     const glm::ivec2 first(floorDiv(-up.x, 8), floorDiv(-up.y, 8));
     const glm::ivec2 last(floorDiv(voxels - 1 - down.x, 8), floorDiv(voxels - 1 - down.y, 8));
     return {first, last - first + 1};
@@ -44,7 +44,7 @@ ColumnRange columnsReadFor(std::span<const glm::ivec2> slants, int voxels) {
 
 using PartCounts = std::array<std::size_t, kMostJoined / 8>;
 
-// Returns how many blocks of a column there are of each of so many that follow each other.
+// Counts the blocks of a column per part.
 PartCounts countParts(std::span<const CodeBlock> column, std::size_t parts) {
     PartCounts counts{};
     if (parts == 1) {
@@ -72,7 +72,7 @@ JoinedTiles::JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const g
         const ColumnRange ofPart = columnsReadFor(slants.subspan(slice, count), 8 * within);
         ofFirst_.push_back({own_ + ofPart.first, ofPart.count});
     }
-    // A run has a share of all blocks, and no more than a row of tiles.
+    // A run has at least this many blocks, but stays within a row of tiles.
     const std::size_t least = std::max<std::size_t>(256, blocks.size() / 256);
     constexpr int kAny = std::numeric_limits<int>::max() >> 3;
     std::size_t inRun = least;
@@ -97,7 +97,7 @@ std::vector<JoinedTile> JoinedTiles::listTiles() const {
     std::vector<JoinedTile> tiles;
     for (int u = 0; u < sources_.x; ++u) {
         for (int v = 0; v < sources_.y; ++v) {
-            // Of a row of columns most are in the tile of the one before.
+            // Neighbouring columns are mostly in the same tile.
             for (std::size_t column = 0; column + 1 < begins_.size(); ++column) {
                 const JoinedTile tile = tileOf(placeOf(column) + own_ - glm::ivec2(u, v));
                 if (tiles.empty() || tiles.back() != tile) tiles.push_back(tile);
@@ -132,7 +132,7 @@ TileSources JoinedTiles::sourcesOf(const JoinedTile& tile) const {
 
 std::size_t JoinedTiles::mostBlocks(const TileSources& sources, int u, int firstPlace,
                                     int lastPlace) const {
-    std::vector<PartCounts> counts;  // [u][v], of the columns that these are made of
+    std::vector<PartCounts> counts;  // [u][v]: of source columns
     for (int i = 0; i < sources_.x; ++i)
         for (int v = 0; v < TileSources::kColumns.y; ++v)
             counts.push_back(countParts(sources.at(within_ * u + i, v), partCount()));
@@ -164,7 +164,7 @@ std::size_t JoinedTiles::mostBlocks(const TileSources& sources, int u, int first
 
 namespace {
 
-constexpr std::size_t kSlice = 64;  // of a block
+constexpr std::size_t kSlice = 64;  // voxels of a block's slice
 constexpr std::size_t kSlices = 8;
 
 }  // namespace
@@ -202,15 +202,14 @@ bool JoinedTileReader::next() {
     }
     if (place_ > lastPlace_) return false;
     has_.reset();
-    // Of 8 slices of joined ones.
+    // Number of layers in eight joined slices.
     const int layers = (1 << tiles_.shift()) / int(isFilled_.size());
     for (int layer = 0; layer < layers; ++layer)
         if (readLayer(place_ * layers + layer)) joinLayer(layer);
     return true;
 }
 
-// Reads the blocks of a layer, of which there is one after the other along the slices. Returns
-// whether there are any.
+// Reads the blocks of a layer. Returns whether there are any.
 bool JoinedTileReader::readLayer(int layer) {
     bool hasAny = false;
     for (std::size_t part = 0; part < isFilled_.size(); ++part)
@@ -235,7 +234,7 @@ bool JoinedTileReader::readPart(std::size_t part, int position) {
     return isFilled.any();
 }
 
-// Brings what will be read soon nearer.
+// Prefetches blocks that are read soon.
 void JoinedTileReader::fetchAhead(std::size_t column) const {
     constexpr std::size_t kLeafAhead = 6;
     constexpr std::size_t kCodesAhead = 2;
@@ -247,12 +246,10 @@ void JoinedTileReader::fetchAhead(std::size_t column) const {
     if (const CodeTree::Leaf* leaf = leafOf(column + kCodesAhead)) fetchCodes(*leaf);
 }
 
-// Of the layer's voxel, where it is.
 std::ptrdiff_t JoinedTileReader::placeOf(std::size_t slice, const glm::ivec2& at) const {
     return (std::ptrdiff_t(slice) * voxels_.x + at.x) * voxels_.y + at.y;
 }
 
-// Returns where a source column's first voxel is in the layer.
 ClassIndex* JoinedTileReader::rowsOf(std::size_t part, std::size_t column) {
     const auto u = int(column) / TileSources::kColumns.y;
     const auto v = int(column) % TileSources::kColumns.y;
@@ -275,7 +272,7 @@ void JoinedTileReader::clearBlock(std::size_t part, std::size_t column) {
         for (int u = 0; u < 8; ++u) std::fill_n(rows + placeOf(slice, {u, 0}), 8, ClassIndex{0});
 }
 
-// Joins the slices of the layer in hand, a part of those that blocks at this place have.
+// Joins the slices of the current layer.
 void JoinedTileReader::joinLayer(int layer) {
     for (int u = 0; u < columns_.x; ++u) {
         for (int v = 0; v < columns_.y; ++v) {
@@ -306,7 +303,7 @@ void JoinedTileReader::joinBlock(int u, int v, int layer, BlockClasses& out) {
     std::array<const ClassIndex*, kMostJoined> slices;
     for (std::size_t i = 0; i < joined; ++i) {
         std::size_t count = 0;
-        // Two and two, for so they are joined; pairs in which nothing is are left out.
+        // Slices are joined in pairs; empty pairs are left out.
         for (std::size_t k = 0; k < slants.size(); k += 2) {
             const std::size_t place = i * slants.size() + k;
             const glm::ivec2 nearer = first - slants[k];
@@ -317,13 +314,13 @@ void JoinedTileReader::joinBlock(int u, int v, int layer, BlockClasses& out) {
             slices[count++] = layer_.data() + placeOf(place + 1, farther);
         }
         const std::size_t slice = std::size_t(layer) * joined + i;
-        if (count == 0) continue;  // it is clear
+        if (count == 0) continue;  // nothing is visible
         joiner_.join(std::span(slices).first(count), std::size_t(voxels_.y), slice,
                      &out[kSlice * slice], cache_);
     }
 }
 
-// Whether there may be anything in the layer's voxels from a place on that become 8x8.
+// Whether the 8x8 joined voxels from a place on may have sources in the layer.
 bool JoinedTileReader::mayHave(std::size_t slice, const glm::ivec2& first) const {
     const std::bitset<TileSources::kCount>& isFilled = isFilled_[slice / kSlices];
     const glm::ivec2 last = first + 8 * tiles_.within() - 1;
@@ -335,12 +332,12 @@ bool JoinedTileReader::mayHave(std::size_t slice, const glm::ivec2& first) const
 
 namespace {
 
-// Then nothing tells voxels apart but how much light they absorb.
+// Whether only absorption distinguishes classes.
 bool areSummed(const ClassTable& classes) {
     return classes.oneColor || classes.looks.size() == 1;
 }
 
-// The look that is this over a step of the classes.
+// Returns the look that gives this light over a step of the classes.
 Look lookOf(const glm::dvec4& light, const ClassTable& classes) {
     const double unitDistances =
         classes.extinctionScale * (classes.stepWorld / classes.unitDistanceWorld);

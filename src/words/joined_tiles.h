@@ -17,14 +17,13 @@
 
 namespace deltasplat {
 
-/// A rectangle of kTileColumns columns of blocks (same u and v), and what their joined slices
-/// become: the place (u, v) of its first one is this times JoinedTiles::columns().
+/// A rectangle of kTileColumns columns of blocks (same u and v) and the columns they are joined to.
+/// The first joined column is at (u, v) = tile * JoinedTiles::columns().
 using JoinedTile = glm::ivec2;
 
 inline constexpr glm::ivec2 kTileColumns{8, 16};
 
-/// The blocks that a tile's columns are made of, before slices are joined: of columns [u][v], some
-/// more than the tile has, for slants reach into neighbours. Empty where there are none.
+/// The columns of blocks that a tile is joined from, some empty. Slants reach into neighbours.
 struct TileSources {
     static constexpr glm::ivec2 kColumns = kTileColumns + kMostJoined / 8;
 
@@ -32,7 +31,6 @@ struct TileSources {
 
     std::array<std::span<const CodeBlock>, kCount> columns;
 
-    /// Returns the number of a column.
     static constexpr std::size_t numberOf(int u, int v) {
         return std::size_t(u) * kColumns.y + std::size_t(v);
     }
@@ -40,45 +38,44 @@ struct TileSources {
     const std::span<const CodeBlock>& at(int u, int v) const { return columns[numberOf(u, v)]; }
 };
 
-/// Columns along u and v: the first of several, and how many there are.
+/// A rectangle of columns along u and v.
 struct ColumnRange {
     glm::ivec2 first;
     glm::ivec2 count;
 };
 
-/// Where there are columns of joined slices, and what they are made of. Slices n * i to n * i + n -
-/// 1 become one, each moved by a slant of its own, and then w x w voxels of it.
+/// The columns of joined slices and their sources. Slices n * i to n * i + n - 1 are joined, each
+/// moved by its own slant, and then w x w voxels of the result.
 class JoinedTiles {
   public:
-    /// @param blocks  ordered by u, v and slice; must outlive this
+    /// @param blocks  ordered by u, v and slice; must outlive this object
     /// @param slants  [n, a power of two]: as Subdivision::joinedSlants
     /// @param within  w, as Subdivision::joinedWithin
     JoinedTiles(const std::vector<CodeBlock>& blocks, std::span<const glm::ivec2> slants,
                 int within = 1);
 
-    /// The tiles in which there may be anything, ordered by u, then v: in runs of neighbours along
-    /// v, which are one task each.
+    /// The tiles that may have voxels, ordered by u, then v. Each run along v is one task.
     const std::vector<std::vector<JoinedTile>>& runs() const { return runs_; }
     std::span<const glm::ivec2> slants() const { return slants_; }
-    /// The power of two that slices are joined by.
+    /// Log2 of the number of slices that are joined.
     int shift() const { return shift_; }
-    /// How many voxels beside each other become one, along u and along v.
+    /// Number of neighbouring voxels that are joined, along u and along v.
     int within() const { return within_; }
-    /// How many columns a tile has, of what slices become.
+    /// Number of joined columns in a tile.
     glm::ivec2 columns() const { return kTileColumns / within_; }
-    /// How many columns of sources there are at most: no more than TileSources::kColumns.
+    /// Largest number of source columns, at most TileSources::kColumns.
     glm::ivec2 sourceColumns() const { return kTileColumns - within_ + sources_; }
-    /// Of the sources, where those of the tile's first column begin in the first slice.
+    /// Index of the source column in which a tile's first column begins in the first slice.
     const glm::ivec2& own() const { return own_; }
-    /// How many blocks one behind the other have slices that become one.
+    /// Number of consecutive blocks whose slices are joined.
     std::size_t partCount() const { return ofFirst_.size(); }
-    /// Of so many blocks, which sources column (0, 0) is made of as far as one of them goes.
+    /// The source columns of column (0, 0), within one of those blocks.
     const ColumnRange& sourcesOfFirst(std::size_t part) const { return ofFirst_[part]; }
 
     TileSources sourcesOf(const JoinedTile& tile) const;
-    /// Returns the most blocks of joined slices that a tile's columns of the same u can have.
+    /// Returns an upper bound of the joined blocks in a tile's columns of one u.
     std::size_t mostBlocks(const TileSources& sources, int u, int firstPlace, int lastPlace) const;
-    /// The same of all tiles together, whatever their place.
+    /// Upper bound of the joined blocks in all tiles.
     std::size_t mostBlocks() const { return mostBlocks_; }
 
   private:
@@ -97,29 +94,25 @@ class JoinedTiles {
     std::size_t mostBlocks_ = 0;
 };
 
-/// Reads what the voxels of joined slices are, from the first block of a tile's columns to the
-/// last. Every block is read once for a tile, with those around it at hand.
+/// Joins the slices of a tile, from its first block to its last. Reads every block once per tile.
 class JoinedTileReader {
   public:
-    /// Most columns that a tile has.
     static constexpr std::size_t kColumns = std::size_t{kTileColumns.x} * kTileColumns.y;
     using BlockClasses = std::array<ClassIndex, 512>;
 
-    /// @param classes,joiner,tiles  must outlive this
+    /// @param classes,joiner,tiles  must outlive this object
     JoinedTileReader(const ClassReader& classes, const SliceJoiner& joiner,
                      const JoinedTiles& tiles);
 
-    /// Takes on a tile, before whose first block in [firstPlace, lastPlace] it stands then.
+    /// Starts a tile, before its first block in [firstPlace, lastPlace].
     void begin(const TileSources& sources, int firstPlace, int lastPlace);
-    /// Goes on to the next place along the slices at which there are blocks. Returns whether there
-    /// is one.
+    /// Moves to the next place along the slices with blocks. Returns false at the end.
     bool next();
     int place() const { return place_; }
-    /// How many columns a tile has, as JoinedTiles says.
     const glm::ivec2& columns() const { return columns_; }
     /// Whether a column, `[u][v]`, has a block at this place.
     bool has(std::size_t column) const { return has_[column]; }
-    /// Returns what it is, `[slice][u][v]`.
+    /// Returns the classes of this block, `[slice][u][v]`.
     const BlockClasses& classes(std::size_t column) const { return joined_[column]; }
 
   private:
@@ -138,42 +131,40 @@ class JoinedTileReader {
     const ClassReader& classReader_;
     const SliceJoiner& joiner_;
     const JoinedTiles& tiles_;
-    glm::ivec2 columns_;  // of what slices become
-    TileSources rest_;    // blocks that are still to come
+    glm::ivec2 columns_;  // number of joined columns
+    TileSources rest_;    // blocks not read yet
     int lastPlace_ = 0;
     int place_ = 0;
-    // The fewest blocks one behind the other of which slices become whole ones, of every source
-    // column: [slice][u][v].
+    // A layer: the fewest blocks joined to whole slices, per source column. [slice][u][v]
     std::vector<std::bitset<TileSources::kCount>> isFilled_;  // [part][column]
-    std::size_t sourceCount_;                                 // columns behind these have no blocks
-    glm::ivec2 voxels_;                                       // of a slice of them
+    std::size_t sourceCount_;                                 // columns from here on have no blocks
+    glm::ivec2 voxels_;                                       // size of a slice of the layer
     std::vector<ClassIndex> layer_;
     std::vector<BlockClasses> joined_;  // [column]
     std::bitset<kColumns> has_;
     LookCache cache_;
 };
 
-/// Whether two slices of voxels of these classes can be joined for steps of any length: all have
-/// one colour, for then it does not matter which is in front, or there are few enough for pairs of
-/// them to be numbered.
+/// Whether pairs of slices of these classes can be joined for any step length: all classes have one
+/// colour, so that their order does not matter, or there are few enough classes to number pairs.
 bool canBePaired(const ClassTable& classes);
 
-/// What becomes one.
+/// Parameters of a join.
 struct JoinedRun {
     int slices;
     int within;               ///< as Subdivision::joinedWithin
-    SeenThrough seenThrough;  ///< of two that follow each other, which is behind
-    double steps;             ///< how many times as long as those of the classes steps are
+    SeenThrough seenThrough;  ///< which slice of a pair is behind
+    double steps;             ///< step length relative to that of the classes
 };
 
-/// Returns what each class looks like over a step, premultiplied; black where all have one colour.
+/// Returns the premultiplied look of each class over a step; black if all classes have one colour.
 std::vector<glm::dvec4> lightsOf(const ClassTable& classes);
 
-/// Returns what joins slices: for steps of any length if they are of one colour, or two that can be
-/// paired, and no more than slices is joined.
+/// Returns a joiner. It serves steps of any length if classes have one colour, or if two slices
+/// that can be paired are joined without joining within slices.
 SliceJoiner joinerOf(const ClassTable& classes, const JoinedRun& run);
 
-/// Returns the classes that voxels of joined slices have, once these are joined.
+/// Returns the classes of the joined voxels, after the joining.
 ClassTable joinedClasses(const ClassTable& classes, const SliceJoiner& joiner,
                          const JoinedRun& run);
 

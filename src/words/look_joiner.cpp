@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joining looks, its inner loops compiled once for each SIMD level.
+// Joining looks; inner loops compiled once per SIMD level.
 #include "words/look_joiner.h"
 
 #include <algorithm>
@@ -25,32 +25,30 @@
 #define DELTASPLAT_LOOK_LEVELS
 namespace deltasplat {
 
-// What looks are rounded to.
+// Rounding levels of looks.
 struct LookLevels {
-    // Of x = A / (1 - A + kLeastRest), which tells opacities apart where these are small, and
-    // transmittances where those are: 0 to 1 / kLeastRest.
+    // Levels of x = A / (1 - A + kLeastRest), 0 to 1 / kLeastRest: fine near clear and near opaque.
     static constexpr float kLeastRest = 0x1p-12F;
-    // What is less is seen as this.
+    // Smaller values are seen as this.
     static constexpr float kLeast = 0x1p-60F;
     static constexpr int kMantissaBits = 23;  // of a float
 
     const float* lights;  // [classes][4]
-    // [classes][classes][4]: two of them, the nearer first; null: there is none.
+    // [nearer][farther][4], or null.
     const float* pairs;
     std::size_t classCount;
     std::array<float, 3> perLargest;
     int opacityBits;
     int colorBits;
-    // [64]: what is added, of a level, before what is behind the point is dropped: 0 to 1.
+    // [64]: threshold added to a level before it is truncated, 0 to 1.
     const float* thresholds;
-    std::uint16_t aloneClasses;  // as LookJoiner has them
+    std::uint16_t aloneClasses;  // as in LookJoiner
 };
 
-// Of 64 voxels.
 struct LookKeys {
-    std::array<ClassIndex, 64> alone;    // what it is of one class that is alone
-    std::array<std::uint8_t, 8> others;  // [row]: the voxels that are not
-    // Of these:
+    std::array<ClassIndex, 64> alone;    // number of a single class
+    std::array<std::uint8_t, 8> others;  // [row]: voxels with several classes
+    // Of voxels with several classes:
     std::array<std::uint32_t, 64> opacities;
     std::array<std::uint32_t, 64> colors;
 };
@@ -64,7 +62,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Rounds eight looks.
 // @param lights      [8][4]: premultiplied, opacity last
-// @param thresholds  of them
+// @param thresholds  [8]
 HWY_INLINE void roundLooks(const LookLevels& levels, const float* lights, const float* thresholds,
                            std::uint32_t* opacities, std::uint32_t* colors) {
     const hn::CappedTag<float, 8> tag;
@@ -102,8 +100,8 @@ HWY_INLINE void roundLooks(const LookLevels& levels, const float* lights, const 
     }
 }
 
-// Numbers eight voxels of which nothing is seen, or one class alone. Returns which are others.
-// @param aloneClasses  0: all others are
+// Numbers eight voxels with no class or a single one. Returns the mask of the others.
+// @param aloneClasses  if 0, all visible voxels are others
 HWY_INLINE unsigned numberAlone(const JoinedRows& rows, std::size_t first,
                                 std::uint16_t aloneClasses, ClassIndex* HWY_RESTRICT out) {
     const hn::CappedTag<std::uint16_t, 8> tag;
@@ -125,7 +123,7 @@ HWY_INLINE unsigned numberAlone(const JoinedRows& rows, std::size_t first,
             isOther = isSeen;
             number = hn::Zero(tag);
         } else {
-            // How often it is there says which of its numbers it has.
+            // The number depends on how often the class occurs.
             number = hn::Add(hn::Sub(number, hn::Set(tag, aloneClasses)), seen);
         }
         hn::StoreU(hn::IfThenElseZero(isSeen, number), tag, out + v);
@@ -136,7 +134,7 @@ HWY_INLINE unsigned numberAlone(const JoinedRows& rows, std::size_t first,
     return others;
 }
 
-// What a voxel looks like, or two neighbours in a vector that has room for both.
+// Returns the light of a voxel, or of two neighbours if the vector has room.
 template <class D>
 HWY_INLINE hn::Vec<D> lightsOf(D tag, const float* lights, const ClassIndex* classes) {
     if constexpr (hn::MaxLanes(D()) == 4) {
@@ -148,15 +146,14 @@ HWY_INLINE hn::Vec<D> lightsOf(D tag, const float* lights, const ClassIndex* cla
     }
 }
 
-// What eight voxels of a row look like, their slices one behind the other, the nearest first: all
-// at once, for each has to wait for the slice before.
-// @param rows  classes, or pairs of them, that `lights` are of
+// Joins the slices of eight voxels, nearest first; at once, because each step waits for the last.
+// @param rows  indices into `lights`: classes or pairs
 // @param out   [8][4]
 HWY_INLINE void joinRow(const JoinedRows& rows, const float* lights, std::size_t first,
                         float* HWY_RESTRICT out) {
     const hn::CappedTag<float, 8> tag;
     using V = hn::Vec<decltype(tag)>;
-    constexpr std::size_t kVoxels = hn::MaxLanes(decltype(tag)()) / 4;  // of a vector
+    constexpr std::size_t kVoxels = hn::MaxLanes(decltype(tag)()) / 4;  // per vector
     const V one = hn::Set(tag, 1.0F);
     const auto lightOf = [&](std::size_t slice, std::size_t v) HWY_ATTR {
         return lightsOf(tag, lights, rows.slices[slice] + first + v);
@@ -183,8 +180,7 @@ HWY_INLINE void joinRow(const JoinedRows& rows, const float* lights, std::size_t
     }
 }
 
-// What eight voxels look like: as joinRow, of classes, where any is seen. By pairs of slices, for
-// which there may be a table. Returns whether any is.
+// Like joinRow for classes, by pairs of slices if possible. Returns whether any voxel is visible.
 HWY_INLINE bool joinClasses(const JoinedRows& rows, const LookLevels& levels, std::size_t first,
                             float* HWY_RESTRICT out) {
     HWY_ALIGN ClassIndex pairs[4 * kMostJoined];  // [pair][v]
@@ -221,8 +217,7 @@ void joinLooksKernel(const JoinedRows& rows, const LookLevels& levels, LookKeys&
     }
 }
 
-// Adds what `within` rows of as many voxels for each of eight look like to sums. Returns whether
-// any is seen.
+// Adds `within` rows of voxels to the sums of eight squares. Returns whether any voxel is visible.
 // @param sums  [8][4]
 HWY_INLINE bool addSquares(const JoinedRows& rows, const LookLevels& levels, std::size_t first,
                            std::size_t within, float* HWY_RESTRICT sums) {
@@ -242,7 +237,7 @@ HWY_INLINE bool addSquares(const JoinedRows& rows, const LookLevels& levels, std
     return isSeen;
 }
 
-// The same of squares of voxels, each of which becomes one: the mean of what its voxels look like.
+// Joins squares of voxels to their mean look.
 void joinSquaresKernel(const JoinedRows& rows, const LookLevels& levels, std::size_t within,
                        LookKeys& keys) {
     const hn::FixedTag<float, 4> tag;
@@ -272,11 +267,10 @@ HWY_EXPORT(joinSquaresKernel);
 
 using Thresholds = std::array<float, 64>;  // of a slice, [u][v]
 
-// Where looks are rounded to few levels: neighbours, also along the slices, take the one above and
-// the one below as often as is right, so that what is even keeps its mean (but for the squares of
-// roots, which are a little more). [slice], of a block.
+// Thresholds for few levels, [slice] of a block. Neighbours round up or down in proportion, so that
+// even areas keep their mean (squares of roots: slightly more).
 std::array<Thresholds, 8> spreadThresholds() {
-    // The powers of 1 / x, x^4 = x + 1: a lattice that is even in three dimensions.
+    // Powers of 1 / x with x^4 = x + 1: a lattice that is even in three dimensions.
     constexpr std::array<double, 3> kSteps{0.81917251339616444, 0.67104360670378923,
                                            0.54970047790197024};
     std::array<Thresholds, 8> all;
@@ -299,7 +293,6 @@ const float* thresholdsOf(int bits, std::size_t slice) {
     return bits == LookRun::kMostBits ? nearest.data() : spread[slice].data();
 }
 
-// The palette of what is not alone.
 std::shared_ptr<LookPalette> paletteBesides(std::size_t alone) {
     return std::make_shared<LookPalette>(std::numeric_limits<ClassIndex>::max() - alone);
 }
@@ -323,7 +316,7 @@ LookJoiner::LookJoiner(const std::vector<glm::dvec4>& lights, const LookRun& run
     palette_ = paletteBesides(std::size_t(run.slices) * aloneClasses_);
 }
 
-// Half as many are to be put behind each other then.
+// Halves the number of joins per voxel.
 void LookJoiner::joinPairs() {
     std::vector<Rgba> pairs;
     pairs.reserve(rounded_.size() * rounded_.size());
@@ -348,12 +341,12 @@ void LookJoiner::beginSample() const {
 }
 
 void LookJoiner::endSample(std::size_t ofHalf) const {
-    // Means are of more kinds, of which a sixteenth may have few.
+    // Means are more varied, and a sixteenth of the volume may show few of them.
     const bool mayForesee =
         palette_->isLimited() && ofHalf > 0 && run_.within > 1 && run_.bits > LookRun::kLeastBits;
     const auto found = double(palette_->count());
     const double growth = mayForesee ? std::min(found / double(ofHalf), 2.0) : 1;
-    // All is twice that, four times over; and some more, lest all be joined twice.
+    // The whole doubles the sample four times. A margin avoids joining everything twice.
     constexpr double kMargin = 1.33;
     const double expected = kMargin * found * growth * growth * growth * growth;
     palette_->limitTo(mayForesee && expected > double(palette_->most()) ? 0 : 1);
@@ -415,7 +408,7 @@ void LookJoiner::join(std::span<const ClassIndex* const> slices, std::size_t pit
         for (unsigned rest = keys.others[u]; rest != 0; rest &= rest - 1) {
             const std::size_t i = 8 * u + std::size_t(std::countr_zero(rest));
             const std::uint64_t opacity = keys.opacities[i];
-            if (opacity == 0) continue;  // none is seen
+            if (opacity == 0) continue;  // not visible
             const std::size_t number = cache.numberOf(opacity << 32 | keys.colors[i], *palette_);
             out[i] = number == 0 ? ClassIndex{0} : ClassIndex(first + number);
         }

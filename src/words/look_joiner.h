@@ -14,15 +14,14 @@
 
 namespace deltasplat {
 
-/// How looks of several slices are joined.
+/// Parameters of joining looks.
 struct LookRun {
-    int slices = 2;            ///< that become one
-    bool lastInFront = false;  ///< whether slices lie in front of those before them
-    /// To how many bits the square root of a colour's channel is rounded, kLeastBits to kMostBits;
-    /// opacity, or transmittance where that is less, to 2^(bits - 1) levels an octave.
+    int slices = 2;            ///< number of slices joined to one
+    bool lastInFront = false;  ///< each slice lies in front of the previous one
+    /// Square roots of colour channels are rounded to this many bits, kLeastBits to kMostBits. The
+    /// smaller of opacity and transmittance is rounded to 2^(bits - 1) levels per octave.
     int bits = kMostBits;
-    /// Voxels of what slices become, along u and along v, that become one: 1, 2 or 4. That looks
-    /// like their mean.
+    /// Number of joined voxels that then become their mean look, along u and along v: 1, 2 or 4.
     int within = 1;
 
     static constexpr int kMostBits = 10;
@@ -31,38 +30,37 @@ struct LookRun {
     bool operator==(const LookRun&) const = default;
 };
 
-/// Joins slices of classes of any colours, over steps of one length: numbers what voxels look like
-/// one behind the other as it comes up. One class alone, however often it is there, is what it is
-/// (unless voxels become one); others are rounded: to kMostBits to the nearest level, to fewer so
-/// that the mean of many voxels stays what it is, to 0.0006 of the largest with 5 bits.
+/// Joins slices of classes of any colours, for one step length, and numbers the joined looks as
+/// they occur. A voxel with only one class in its slices keeps its exact look (unless neighbouring
+/// voxels are joined). Other looks are rounded: with kMostBits to the nearest level, with fewer
+/// bits so that the mean of many voxels is kept, to 0.0006 of the largest with 5 bits.
 class LookJoiner {
   public:
-    /// @param lights  of each class, premultiplied RGBA; the first, of what is empty, is 0
+    /// @param lights  [class]: premultiplied RGBA; the first class is empty and 0
     LookJoiner(const std::vector<glm::dvec4>& lights, const LookRun& run);
 
     const LookRun& run() const { return run_; }
     /// As SliceJoiner::join.
     void join(std::span<const ClassIndex* const> slices, std::size_t pitch, std::size_t slice,
               ClassIndex* out, LookCache& cache) const;
-    /// Returns what has come up so far: [number], colour, not multiplied by opacity, and opacity
-    /// over a step. Not while others join.
+    /// Returns the looks so far, [number]: straight colour, opacity over a step. Not during joins.
     std::vector<glm::dvec4> looks() const;
 
-    /// Whether more came up than there are numbers for: then what was joined is nothing.
+    /// Whether looks exceeded the numbers. Then all results are invalid.
     bool hasTooMany() const { return palette_->hasTooMany(); }
-    /// How many have come up so far, but for those that are alone. Not while others join.
+    /// Number of looks so far, without single classes. Not while others join.
     std::size_t count() const { return palette_->count(); }
-    /// Says that what is joined from now on is a sixteenth of all, from all over the volume: there
-    /// are too many if this has many, unless looks have come up before. Not while others join.
+    /// Announces a sample: a sixteenth of all joins, from all over the volume. If there are no
+    /// looks yet, it may use a third of the numbers. Not while others join.
     void beginSample() const;
-    /// Says that all else follows. Of means, there are too many if so many would come up in all, as
-    /// many more each time that what is joined doubles. Not while others join.
-    /// @param ofHalf  what count() was when half of the sample had been joined
+    /// Announces the rest. If voxels within slices are joined, too many looks are reported if the
+    /// growth within the sample foretells more than there are numbers. Not while others join.
+    /// @param ofHalf  count() after half of the sample
     void endSample(std::size_t ofHalf) const;
-    /// Returns the same, rounded further, of which nothing has come up yet.
+    /// Returns a joiner with coarser rounding and no looks so far.
     LookJoiner coarser() const;
 
-    /// Whether both have one numbering.
+    /// Whether both share one numbering.
     bool operator==(const LookJoiner& other) const { return palette_ == other.palette_; }
 
   private:
@@ -72,14 +70,13 @@ class LookJoiner {
     LookRun run_;
     std::vector<glm::dvec4> lights_;  // [classes]
     using Rgba = std::array<float, 4>;
-    std::vector<Rgba> rounded_;  // the same
-    // [nearer][farther]: what two of them look like; null: they are too many for 16 bits.
+    std::vector<Rgba> rounded_;  // lights_ as floats
+    // [nearer][farther]: looks of pairs; null if pairs do not fit into 16 bits.
     std::shared_ptr<const std::vector<Rgba>> pairs_;
-    glm::dvec3 largest_{0.0};            // of each channel of colours
-    std::array<float, 3> perLargest_{};  // 1 / that, 0 where it is 0
-    // Classes that have numbers of their own where they are alone, for each time that they are
-    // there: the first ones. 0: there are too many, or means are taken, and these are rounded as
-    // well.
+    glm::dvec3 largest_{0.0};            // per colour channel
+    std::array<float, 3> perLargest_{};  // 1 / largest_, or 0
+    // Number of classes with exact looks, one per count of slices. They have the first numbers. 0
+    // if there are too many of them or voxels are averaged: then they are rounded as well.
     std::size_t aloneClasses_ = 0;
     std::shared_ptr<LookPalette> palette_;
 };

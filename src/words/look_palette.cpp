@@ -22,7 +22,7 @@ std::uint32_t LookPalette::numberOf(std::uint64_t key) {
             there = key;
         }
         if (there != key) continue;
-        // Who took the place is about to say.
+        // The thread that took the place sets the number soon.
         std::uint32_t number = 0;
         while (number == 0) number = place.number.load(std::memory_order_acquire);
         return number > limit_ ? 0 : number;

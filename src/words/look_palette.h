@@ -10,17 +10,16 @@
 
 namespace deltasplat {
 
-/// Numbers keys as they come up. Any number of threads may ask at once: which key gets which number
-/// is left to chance, but not whether there are too many.
+/// Numbers keys as they occur. Thread-safe; only the numbers depend on timing, not the count.
 class LookPalette {
   public:
-    /// @param most  that there are numbers for, 65535 at most
+    /// @param most  number of numbers, at most 65535
     explicit LookPalette(std::size_t most);
 
-    /// Returns the number of a key, 1 to `most`; 0 if there are too many.
+    /// Returns the number of a key, 1 to `most`; 0 if there are too many keys.
     /// @param key  not 0
     std::uint32_t numberOf(std::uint64_t key);
-    /// From now on takes more than a share of `most` for too many. Not while others ask.
+    /// Limits the numbers to a share of `most` from now on. Not while others ask.
     void limitTo(double share);
     bool isLimited() const { return limit_ < most_; }
     std::size_t most() const { return most_; }
@@ -32,17 +31,17 @@ class LookPalette {
   private:
     struct Place {
         std::atomic<std::uint64_t> key = 0;
-        std::atomic<std::uint32_t> number = 0;  // of a key: soon
+        std::atomic<std::uint32_t> number = 0;  // set soon after `key`
     };
 
     std::size_t most_;
     std::size_t limit_;
-    std::vector<Place> places_;  // an open hash table, half full at most
+    std::vector<Place> places_;  // open hash table, at most half full
     std::atomic<std::uint32_t> count_ = 0;
     std::atomic<bool> hasTooMany_ = false;
 };
 
-/// What one thread has asked a palette for: most keys come up again soon.
+/// A thread's recent queries of a palette, because most keys recur soon.
 class LookCache {
   public:
     LookCache() : entries_(kEntries) {}

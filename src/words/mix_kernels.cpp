@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inner loops of mixing values, compiled once for each SIMD level.
+// Mixing values; inner loops compiled once per SIMD level.
 #include "words/mix_kernels.h"
 
 #include <algorithm>
@@ -26,10 +26,10 @@ using IntVec = hn::Vec<Ints>;
 
 constexpr std::size_t kSide = MixWindow::kSide;
 constexpr std::size_t kPlane = MixWindow::kPlane;
-// What vectors reach beyond a row or a plane, at most.
+// Largest overrun of vectors beyond a row or a plane.
 constexpr std::size_t kBeyond = 8;
 
-// As mixed() of mix_rows.h, of twice the share.
+// As mixed() in mix_window.h, with twice the share.
 HWY_INLINE FloatVec mixedVector(FloatVec here, FloatVec other, FloatVec twice) {
     const FloatVec half = hn::Set(Floats(), 0.5f);
     const FloatVec difference = hn::Sub(hn::Mul(half, other), hn::Mul(half, here));
@@ -37,13 +37,12 @@ HWY_INLINE FloatVec mixedVector(FloatVec here, FloatVec other, FloatVec twice) {
     return hn::Add(here, hn::IfThenElseZero(hn::Eq(difference, difference), step));
 }
 
-// What becomes of steps above the lowest code.
+// Maps steps above the lowest code to looks.
 struct LevelLooks {
     FloatVec perCode;
     const Slot* slotMap;
     const float* opacities;
 
-    // Returns the slots of levels.
     HWY_INLINE IntVec levelsOf(FloatVec steps) const {
         const auto isThere = hn::Eq(steps, steps);
         const FloatVec some = hn::Mul(hn::IfThenElseZero(isThere, steps), perCode);
@@ -59,11 +58,11 @@ struct LevelLooks {
     }
 };
 
-// The most opaque of what each voxel of a block becomes.
+// Largest opacity among the parts of each voxel.
 struct MostOpacities {
     HWY_ALIGN float of[512] = {};
 
-    // Notes what the voxels of a row from `place` on become.
+    // Notes the parts of the voxels in a row from `place` on.
     HWY_INLINE void note(const LevelLooks& looks, IntVec levels, std::size_t place) {
         const FloatVec known = hn::LoadU(Floats(), of + place);
         hn::StoreU(hn::Max(known, looks.opacitiesOf(levels)), Floats(), of + place);
@@ -73,7 +72,7 @@ struct MostOpacities {
     }
 };
 
-// The same where opacities rise with levels: of the highest.
+// The same if opacities rise with levels: keeps the highest level.
 struct HighestLevels {
     HWY_ALIGN std::int32_t of[512] = {};
 
@@ -91,8 +90,7 @@ HWY_INLINE VoxelMasks mixLevels(const MixWindow& window, const Subdivision& part
                                 BlockSlots* mixed) {
     const std::size_t lanes = hn::Lanes(Floats());
 
-    // Steps above the lowest code, NaN where there are none: floats hold the quarters of quarters
-    // of 16 bits exactly.
+    // Steps above the lowest code, or NaN. Floats hold quarters of quarters of 16 bits exactly.
     HWY_ALIGN float steps[kSide * kPlane + kBeyond];
     const IntVec first = hn::Set(Ints(), levels.lowest + 1);
     const FloatVec none = hn::Set(Floats(), std::numeric_limits<float>::quiet_NaN());
@@ -112,7 +110,7 @@ HWY_INLINE VoxelMasks mixLevels(const MixWindow& window, const Subdivision& part
     const auto slices = std::size_t(parts.slices);
     const auto within = std::size_t(parts.within);
     for (std::size_t s = 0; s < 8 * slices; ++s) {
-        // How far from the voxels' middle, in halves of a thin slice.
+        // Distance from the voxel's centre, in halves of a thin slice.
         const int offset = 2 * int(s % slices) + 1 - parts.slices;
         const float* const here = steps + (1 + s / slices) * kPlane;
         const float* const other = offset < 0 ? here - kPlane : here + kPlane;

@@ -11,7 +11,7 @@ namespace deltasplat {
 BlockFinder::BlockFinder(const CodeTree& codes, int sliceAxis)
     : blocks_(codes.blocksAlong(sliceAxis)), sliceAxis_(sliceAxis) {
     if (blocks_) {
-        blocks_->blocks();  // those that are not made yet are made by all threads
+        blocks_->blocks();  // makes missing blocks on all threads
     } else {
         accessor_.emplace(codes.tree());
     }
@@ -71,7 +71,7 @@ void MixWindowReader::read(const glm::ivec3& position, MixWindow& window) const 
     read(finder_.find(position).value_or(nothing), window);
 }
 
-// Reads what the window has of a block on one side of its own (each component -1, 0 or 1).
+// Reads the window's part of the block on one side (each component -1, 0 or 1).
 void MixWindowReader::readPart(const CodeBlock* block, const glm::ivec3& side,
                                MixWindow& window) const {
     glm::ivec3 first, last;

@@ -10,53 +10,50 @@
 
 namespace deltasplat {
 
-/// Finds single blocks of a code tree by their place. Not for several threads at once.
+/// Finds single blocks of a code tree by position. Not thread-safe.
 class BlockFinder {
   public:
     BlockFinder(const CodeTree& codes, int sliceAxis);
 
-    /// Returns a block, slots of tiles being code + 1, if any of it is active. Its range of codes
-    /// is left out, unless it is one of SlotBlocks.
+    /// Returns a block with active voxels. Tile slots are code + 1. Only SlotBlocks give a range.
     std::optional<CodeBlock> find(const glm::ivec3& position) const;
 
   private:
-    const SlotBlocks* blocks_;  // null: the tree is searched
+    const SlotBlocks* blocks_;  // null: search the tree
     std::optional<openvdb::tree::ValueAccessor<const CodeTree::Tree>> accessor_;
     int sliceAxis_;
 };
 
-/// What values are mixed from: the slots (code + 1) of a block and of the voxels around it, empty
-/// where none is active.
+/// Slots (code + 1) of a block and its rim, from which values are mixed. Inactive voxels are empty.
 struct MixWindow {
     static constexpr int kSide = 10;
     static constexpr int kPlane = kSide * kSide;
 
-    std::array<Slot, kSide * kPlane> slots{};  ///< `[slice][u][v]`, from one before the block
+    std::array<Slot, kSide * kPlane> slots{};  ///< `[slice][u][v]`, from one voxel before the block
 
-    /// @param place  of a voxel, -1..8 each, counted from the block's first
+    /// @param place  (slice, u, v), -1..8 each, relative to the block's first voxel
     Slot& at(const glm::ivec3& place) { return slots[indexOf(place)]; }
     Slot at(const glm::ivec3& place) const { return slots[indexOf(place)]; }
     static std::size_t indexOf(const glm::ivec3& place) {
         const int index = (place.x + 1) * kPlane + (place.y + 1) * kSide + place.z + 1;
         return std::size_t(index);
     }
-    /// Whether all of it is one code.
+    /// Whether all voxels have the same code.
     bool isUniform() const;
-    /// Whether any voxel beside one of the block's, across edges and corners too, has a slot.
+    /// Whether any of a voxel's 26 neighbours has a slot.
     bool hasAnyAround(const glm::ivec3& place) const;
 };
 
-/// Returns what lies between two values, or the first where there is no other; NaN where there is
-/// none. Without a branch, so that several are mixed at once.
+/// Interpolates from `here` to `other`; `here` if `other` is NaN. No branch, so that it vectorizes.
 template <typename T>
 inline T mixed(T here, T other, T share) {
-    // Halves, so that no difference overflows.
+    // Halves cannot overflow.
     const T difference = T(0.5) * other - T(0.5) * here;
     const T step = difference * (T(2) * share);
     return here + (difference == difference ? step : T(0));
 }
 
-/// Makes a row of thin voxels of one of voxels and what lies before and behind it.
+/// Divides a row of voxels into thin ones, using the neighbours on both sides.
 template <typename T>
 inline void mixHalves(const T* row, T* thin) {
     for (int v = 0; v < 8; ++v) {
@@ -65,10 +62,9 @@ inline void mixHalves(const T* row, T* thin) {
     }
 }
 
-/// Mixes the values of the thin voxels that those of a block become: calls use(part, place, values)
-/// for rows along v of 8, where `part` is [along u][along slices][along v] and place 64 slice + 8
-/// u.
-/// @param values  as MixWindow::slots, NaN where there are none
+/// Mixes the values of a block's thin voxels and calls use(part, place, values) per row of 8 along
+/// v. `part` indexes [along u][along slices][along v]; `place` is 64 slice + 8 u.
+/// @param values  as MixWindow::slots, NaN without a value
 template <typename T, typename Use>
 void mixRows(const std::array<T, MixWindow::kSide * MixWindow::kPlane>& values,
              const Subdivision& parts, const Use& use) {
@@ -78,7 +74,7 @@ void mixRows(const std::array<T, MixWindow::kSide * MixWindow::kPlane>& values,
     std::array<T, kSide> row;
     std::array<T, 16> thin;
     for (int s = 0; s < 8 * parts.slices; ++s) {
-        // How far from the voxels' middle, in halves of a thin slice.
+        // Distance from the voxel's centre, in halves of a thin slice.
         const int offset = 2 * (s % parts.slices) + 1 - parts.slices;
         const T* here = values.data() + (1 + s / parts.slices) * kPlane;
         const T* other = offset < 0 ? here - kPlane : here + kPlane;
@@ -101,15 +97,13 @@ void mixRows(const std::array<T, MixWindow::kSide * MixWindow::kPlane>& values,
     }
 }
 
-/// Reads windows of a code tree. Not for several threads at once.
+/// Reads windows of a code tree. Not thread-safe.
 class MixWindowReader {
   public:
-    /// @param alongSlicesOnly  leave what lies beside a block empty, but for what is before and
-    ///                         behind it
+    /// @param alongSlicesOnly  read only neighbours along the slices; leave the others empty
     MixWindowReader(const CodeTree& codes, int sliceAxis, bool alongSlicesOnly);
 
     void read(const CodeBlock& block, MixWindow& window) const;
-    /// The same of whatever block is there.
     void read(const glm::ivec3& position, MixWindow& window) const;
 
   private:
@@ -117,7 +111,7 @@ class MixWindowReader {
 
     BlockFinder finder_;
     int sliceAxis_;
-    int reach_;  // blocks beside
+    int reach_;  // number of neighbour blocks along u and v
 };
 
 }  // namespace deltasplat

@@ -11,21 +11,20 @@ namespace {
 
 constexpr BlockClasses kNothing{};
 
-// Brings the codes of the next block nearer, and the leaf of the one behind it.
+// Prefetches the codes of the next block, and the leaf after it.
 void fetchAhead(const CodeBlock* next, const CodeBlock* end) {
     if (next == end) return;
     if (next + 1 < end) hwy::Prefetch(next[1].leaf);
     if (next->leaf) fetchCodes(*next->leaf);
 }
 
-// Puts words of a column's parts along v one part behind the other.
+// Sorts words by parts along v.
 void sortParts(std::vector<PendingWord>& words, std::size_t first) {
     std::stable_partition(words.begin() + std::ptrdiff_t(first), words.end(),
                           [](const PendingWord& word) { return word.block.y % 2 == 0; });
 }
 
-// Puts the words of a row of a tile one column behind the other: then a word's neighbours are those
-// of its block.
+// Sorts a row's words by column, so that words of a block are neighbours.
 void groupByColumn(std::vector<PendingWord>& words, std::size_t first) {
     std::array<std::vector<PendingWord>, std::size_t(kTileColumns.y)> columns;
     for (std::size_t i = first; i < words.size(); ++i)
@@ -41,7 +40,6 @@ std::vector<std::size_t> wordsOf(WordWriter& writer) {
     return words;
 }
 
-// Packs the columns of one tile after the other.
 class TilePacker {
   public:
     TilePacker(const JoinedTiles& tiles, const SliceJoiner& joiner, bool descending,
@@ -52,15 +50,14 @@ class TilePacker {
           writer_(writer),
           last_(std::size_t(columns_.x) * std::size_t(columns_.y)) {}
 
-    // Adds the words of a tile, from its first slice to its last: of each row of columns those of a
-    // slice are in the order of v.
+    // Adds the words of a tile in slice order. Within a row and slice, words are ordered by v.
     void pack(JoinedTileReader& reader, const JoinedTile& tile) {
         tile_ = tile;
         std::fill(last_.begin(), last_.end(), kNever);
         writer_.beginColumns();
         const std::vector<std::size_t> firstWords = wordsOf(writer_);
         int place = kNever;
-        // Of too many looks nothing will be used: all is joined again.
+        // With too many looks the result is discarded.
         while (!joiner_.hasTooManyLooks() && reader.next()) {
             if (place != kNever && place + 1 < reader.place()) endAll(place + 1);
             place = reader.place();
@@ -88,7 +85,7 @@ class TilePacker {
         const glm::ivec2 at = tile_ * columns_ + glm::ivec2(u, v);
         writer_.add(classes, nullptr, {place, at}, column, u, slices);
     }
-    // What a block showed must be taken away behind it.
+    // The slice behind a block removes its voxels.
     void endBefore(std::size_t column, int place) {
         if (last_[column] == kNever || last_[column] != place - 1 ||
             place > writer_.range().lastBlock)
@@ -104,7 +101,7 @@ class TilePacker {
     bool descending_;
     WordWriter& writer_;
     JoinedTile tile_{0};
-    std::vector<int> last_;  // [column]: the place at which it had a block
+    std::vector<int> last_;  // [column]: place of its last block
 };
 
 }  // namespace
@@ -114,7 +111,7 @@ void packColumns(const Columns& columns, BlockSource& source, WordWriter& writer
     const DividedBlock& divided = source.divided();
     const Subdivision& parts = divided.parts;
     const PackRange& range = writer.range();
-    // What is mixed is needed around any slab: it is never taken in parts.
+    // Mixing reads neighbouring slices, so a mixed column is always read whole, never slab by slab.
     const auto isIn = [&](const CodeBlock& block) {
         return source.readsAround() || range.contains(block.position.x);
     };
@@ -123,7 +120,7 @@ void packColumns(const Columns& columns, BlockSource& source, WordWriter& writer
     for (std::size_t half = 0; half < writer.rows().size(); ++half)
         writer.reserve(half, kMostWordsOfBlock * std::size_t(parts.slices) *
                                  std::size_t(parts.within) * blocks);
-    std::vector<std::size_t> firstWords;  // [half]: of the column
+    std::vector<std::size_t> firstWords;  // [half]: first word of the column
     for (const CodeBlock* block = columns.begin; block != columns.end; ++block) {
         if (!isIn(*block)) continue;
         const bool isFirst =
@@ -137,7 +134,7 @@ void packColumns(const Columns& columns, BlockSource& source, WordWriter& writer
         if (!source.readsAround()) fetchAhead(block + 1, columns.end);
         source.read(*block, writer);
         if (!isLast) continue;
-        // What a block showed must be taken away behind it.
+        // The slice behind a block removes its voxels.
         const glm::ivec3 first = divided.first(*block);
         const int next = first.x + parts.slices;
         if (next <= range.lastBlock) {

@@ -10,19 +10,19 @@
 
 namespace deltasplat {
 
-/// Columns of blocks (same u and v), slices in increasing order.
+/// Consecutive columns of blocks (same u and v), slices in increasing order.
 struct Columns {
     const CodeBlock* begin;
     const CodeBlock* end;
 };
 
-/// Makes the words of a run of columns.
-/// @param room  as WordWriter::begin takes it
+/// Makes the words of some columns.
+/// @param room  as for WordWriter::begin
 void packColumns(const Columns& columns, BlockSource& source, WordWriter& writer,
                  std::vector<PackedColumns>& room);
 
-/// Makes the words of a run of tiles whose slices are joined.
-/// @param descending  whether slices are walked from the last one on
+/// Makes the words of a run of tiles with joined slices.
+/// @param descending  slices are walked from last to first
 void packTiles(const JoinedTiles& tiles, std::size_t run, const ClassReader& classes,
                const SliceJoiner& joiner, bool descending, WordWriter& writer,
                std::vector<PackedColumns>& room);

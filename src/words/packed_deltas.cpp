@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: "Accelerating Footprint Method Based on Comparability of Consecutive Image Slices",
-// equation 9. Deviates in that a change is kept as what a voxel becomes: what it was is known to
-// who walks the slices in order.
+// equation 9. Deviates in that a change stores only the new class, because a walk in order knows
+// the old one.
 #include "words/packed_deltas.h"
 
 #include <algorithm>
@@ -27,8 +27,8 @@
 namespace deltasplat {
 namespace {
 
-// Adds blocks in which nothing is seen but what the painter adds, in the order in which they are.
-// @param box  of the volume, which may be a group of what the painter knows
+// Adds blocks, in order, in which only the painter shows something.
+// @param box  of the volume, which may be one of the painter's groups
 void addBlocks(const BlockSet& more, const IndexBox& box, int sliceAxis,
                std::vector<CodeBlock>& blocks) {
     const auto isInBox = [&](const glm::ivec3& position) {
@@ -45,9 +45,8 @@ void addBlocks(const BlockSet& more, const IndexBox& box, int sliceAxis,
     blocks = std::move(all);
 }
 
-// Cuts the blocks into runs of whole columns, for each of which there is one writer. The cuts
-// depend on the volume alone.
-// @param atRows  cut behind each row of columns as well
+// Cuts blocks into runs of whole columns, one per writer. The cuts depend on the volume only.
+// @param atRows  also cut behind each row of columns
 std::vector<Columns> cutAtColumns(const std::vector<CodeBlock>& blocks, bool atRows) {
     const std::ptrdiff_t least = std::max<std::ptrdiff_t>(128, std::ptrdiff_t(blocks.size()) / 256);
     std::vector<Columns> runs;
@@ -64,8 +63,7 @@ std::vector<Columns> cutAtColumns(const std::vector<CodeBlock>& blocks, bool atR
     return runs;
 }
 
-// Room for words that are not in order yet: there is as much as writers use at once, for each takes
-// what another one is done with. New memory takes the system longer than words take to be made.
+// Reusable memory for unsorted words: new memory takes longer than making the words.
 class WordRooms {
   public:
     std::vector<PackedColumns> take() {
@@ -86,8 +84,7 @@ class WordRooms {
 };
 
 // Returns the packed columns ordered by u, then v.
-// @param rowOf  rowOf(i): what tells writers of one row of columns from those of others; these have
-//               several rows each where blocks are halved along u, or joined
+// @param rowOf  rowOf(i): row of writer i's columns; several rows if blocks are halved or joined
 template <typename RowOf>
 std::vector<PackedColumns*> inOrder(std::vector<WordWriter>& writers, const RowOf& rowOf) {
     std::vector<PackedColumns*> columns;
@@ -153,9 +150,9 @@ struct DeltaPacker::Impl {
             divided.joined = int(options.slants.size());
             divided.joinedWithin = options.joinedWithin;
             std::copy(options.slants.begin(), options.slants.end(), divided.slants.begin());
-            options.slants = divided.joinedSlants();  // whoever gave them may be gone
+            options.slants = divided.joinedSlants();  // the caller's slants may be gone
         }
-        box = boxOfSlices(volume.box, options.sliceAxis, divided);
+        box = boxOfSlices(volume.box(), options.sliceAxis, divided);
         if (volume.empty()) return;
         options.classOfSlot = classOfSlot;
         if (options.holds) holder.emplace(mixer ? mixer->levels() : volume, options);
@@ -164,11 +161,11 @@ struct DeltaPacker::Impl {
         options.opacities = {};
         if (mixer) sight.emplace(*mixer, slotMap, choosesClasses(options));
         const SeenCone* const seen = options.seen ? &*options.seen : nullptr;
-        // What is mixed is listed with what lies beside it.
-        blocks = sight ? sight->listBlocks(*volume.codes, options.sliceAxis, volume.histogram)
-                       : listBlocks(*volume.codes, options.sliceAxis, slotMap, seen);
+        // Mixing lists blocks together with their neighbours.
+        blocks = sight ? sight->listBlocks(*volume.codes(), options.sliceAxis, volume.histogram())
+                       : listBlocks(*volume.codes(), options.sliceAxis, slotMap, seen);
         if (options.painter && options.painter->more())
-            addBlocks(*options.painter->more(), volume.box, options.sliceAxis, blocks);
+            addBlocks(*options.painter->more(), volume.box(), options.sliceAxis, blocks);
         if (seen && (sight || options.painter)) {
             std::erase_if(blocks,
                           [&](const CodeBlock& block) { return !seen->sees(block.position); });
@@ -192,7 +189,7 @@ struct DeltaPacker::Impl {
         if (lowest <= highest) ramps.emplace(slotMap, lowest, highest);
     }
 
-    // Returns the opacities of what the slot map makes of slots; none if they are not known.
+    // Returns the opacities of mapped slots; none if unknown.
     std::vector<float> opacitiesOfMapped() const {
         if (options.opacities.empty()) return {};
         const Slot last = *std::max_element(slotMap.begin(), slotMap.end());
@@ -211,7 +208,7 @@ struct DeltaPacker::Impl {
         return packed;
     }
 
-    // All that there is, and slabs as short as they may be.
+    // All blocks, with the shortest slabs.
     PackRange wholeRange(const SlabPlanner& planner) const {
         const SlabLayout& layout = planner.shortest();
         return {layout, layout.firstBlock, layout.lastBlock};
@@ -224,8 +221,8 @@ struct DeltaPacker::Impl {
                                 ramps ? &*ramps : nullptr,
                                 holder ? &*holder : nullptr,
                                 sight ? &*sight : nullptr,
-                                volume.codes.get(),
-                                volume.uncut ? volume.uncut.get() : volume.codes.get(),
+                                volume.codes().get(),
+                                volume.uncut() ? volume.uncut().get() : volume.codes().get(),
                                 mixMap ? &*mixMap : nullptr};
         const ClassReader classes(slotMap, tools.ramps, options.sliceAxis);
         const std::size_t count = joined ? joined->runs().size() : runs.size();
@@ -247,12 +244,11 @@ struct DeltaPacker::Impl {
             parallelFor(count, pack);
             return writers;
         }
-        // Some from all over the volume show how many words, and looks, there will be. The others
-        // in order: neighbours read some of the same leaves.
+        // A sample predicts words and looks. The rest is in order, because neighbours share leaves.
         constexpr std::size_t kStep = 16;
         const std::size_t sample = (count + kStep - 1) / kStep;
         if (areLooks && sample < count) joiner->looks()->beginSample();
-        // Every other one, and then those between them.
+        // The sample's even runs first, then its odd ones.
         parallelFor((sample + 1) / 2, [&](std::size_t i) { pack(kStep * 2 * i); });
         const std::size_t ofHalf = areLooks ? joiner->looks()->count() : 0;
         parallelFor(sample / 2, [&](std::size_t i) { pack(kStep * (2 * i + 1)); });
@@ -269,7 +265,7 @@ struct DeltaPacker::Impl {
 
     bool hasTooManyLooks() const { return joiner && joiner->hasTooManyLooks(); }
 
-    // Whether looks were too many, and slices are to be joined again, with looks rounded further.
+    // Whether there were too many looks, so that slices must be joined again with coarser looks.
     bool mustJoinAgain() {
         if (!hasTooManyLooks()) return false;
         if (joiner->looks()->run().bits == LookRun::kLeastBits)
@@ -278,7 +274,7 @@ struct DeltaPacker::Impl {
         return true;
     }
 
-    // Plans slabs by what writers counted, and puts their words in order.
+    // Plans slabs from the writers' counts, and collects their words.
     void collect(std::vector<WordWriter>& writers, SlabPlanner& planner,
                  PackedDeltas& packed) const {
         for (const WordWriter& writer : writers) planner.add(writer.planner());
@@ -288,24 +284,21 @@ struct DeltaPacker::Impl {
     }
 
     std::vector<PackedColumns*> columnsOf(std::vector<WordWriter>& writers) const {
-        // Where writers have one row of columns each, they are in order.
+        // Writers with one row of columns each are in order.
         return inOrder(writers, [&](std::size_t i) {
             if (joined) return joined->runs()[i].front().x;
             return divided.within > 1 ? runs[i].begin->position.y : int(i);
         });
     }
 
-    // The most blocks that there are words of.
     double mostBlocks() const {
         return joined ? double(joined->mostBlocks()) : double(blocks.size()) * divided.voxels();
     }
 
-    // The most bytes that words can take.
     double mostBytes() const { return mostBlocks() * kMostWordsOfBlock * kBytesPerWord; }
 
-    // Returns how many words may be stored before they are counted, to take so many bytes: none
-    // where these are less than an eighth of the most that words can take, as there are seldom
-    // fewer of them.
+    // Words to store before they are counted. None if `bytes` is less than an eighth of the upper
+    // bound, because words rarely take less.
     double wordsToTry(double bytes) const {
         if (mostBytes() > 8 * bytes) return 0;
         return std::min(bytes, double(availableMemory()) / 2) / kBytesPerWord;
@@ -318,7 +311,7 @@ struct DeltaPacker::Impl {
                       mostBlocks() * kMostWordsOfBlock * wordBytes + 16.0 * box.dims().x);
     }
 
-    // The most words of a slab that are in memory while it is packed (WordWriter::isNeeded).
+    // Most words of a slab in memory while it is packed (WordWriter::isNeeded).
     double storedWords(const PlannedSlab& slab) const {
         const bool storesAll = options.descending && !slab.whole;
         return double(storesAll ? slab.words + slab.seenWords : slab.stampedWords());
@@ -337,7 +330,7 @@ struct DeltaPacker::Impl {
     std::optional<MixedSight> sight;
     std::vector<CodeBlock> blocks;
     std::vector<Columns> runs;
-    std::optional<JoinedTiles> joined;  // in their place, where slices are
+    std::optional<JoinedTiles> joined;  // replaces `runs` if slices are joined
     SlabPlan planned;
     std::vector<SlabRange> parts;
 };

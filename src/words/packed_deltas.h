@@ -22,22 +22,18 @@ namespace deltasplat {
 class SliceJoiner;
 class ValueMixer;
 
-/// Classes of 64 empty voxels.
 inline constexpr std::array<ClassIndex, 64> kEmptyClasses{};
 
-/// One slice of an 8x8x8 block: its 64 voxels, bit 8 * u + v of the masks, as OpenVDB's leaves have
-/// them.
+/// A slice of an 8x8x8 block: 64 voxels, bit 8 * u + v of the masks, as in OpenVDB's leaves.
 struct DeltaWord {
-    std::uint64_t visible;  ///< whose class is not empty
-    /// Whose class or own look differs from the slice that is walked before; in a key slice,
-    /// visible.
+    std::uint64_t visible;  ///< voxels whose class is not empty
+    /// Voxels whose class or look differs from the slice walked before; in a key slice, `visible`.
     std::uint64_t changed;
-    const ClassIndex* classes;  ///< [64]: of all voxels in this slice
+    const ClassIndex* classes;  ///< [64]: classes of all voxels
     glm::ivec2 block;           ///< (u, v) of the first voxel divided by 8
 };
 
-/// The delta grid of a volume as a picture needs it: of classes instead of codes, ordered as it is
-/// walked, and without what nothing is stamped for.
+/// The delta grid of a picture: classes, in walking order, without words that stamp nothing.
 struct PackedDeltas {
     PackedDeltas() = default;
     PackedDeltas(const PackedDeltas&) = delete;
@@ -46,99 +42,87 @@ struct PackedDeltas {
     PackedDeltas& operator=(PackedDeltas&&) = default;
 
     int sliceAxis = 2;
-    /// Slices are walked from the last to the first: what changes is told from the one behind.
-    /// Where all slabs are whole, that makes no difference, and they may be walked either way.
+    /// Slices are walked from last to first, and changes are relative to the slice behind. Makes no
+    /// difference if all slabs are whole.
     bool descending = false;
-    IndexBox box;  ///< of all slices, in (slice, u, v) order
-    std::vector<PlannedSlab>
-        slabs;  ///< in increasing order, covering `box`; none for an empty volume
+    IndexBox box;                    ///< of all slices, in (slice, u, v) order
+    std::vector<PlannedSlab> slabs;  ///< in increasing order, covering `box`; none if empty
 
     std::uint64_t visible() const;  ///< visible voxels, all slabs together
     std::uint64_t deltas() const;   ///< deltas, all slabs together
-    /// Whether all slices are splatted anew.
     bool areWhole() const;
-    /// The words of a slice with changed voxels, or with visible ones in a slab that is whole,
-    /// ordered by u, then v.
+    /// A slice's words with changed voxels, or with visible ones in a whole slab, by u, then v.
     std::span<const DeltaWord> slice(int index) const;
 
     UnclearedVector<DeltaWord> words;  ///< by slice, u and v
-    std::vector<std::size_t> begins;   ///< [slices + 1]: the first of each slice's words
-    std::vector<UnclearedVector<ClassIndex>> storage;  ///< what they point into
-    /// [word]: where voxels have looks of their own, those of its voxels, [64]; else empty.
+    std::vector<std::size_t> begins;   ///< [slices + 1]: index of each slice's first word
+    std::vector<UnclearedVector<ClassIndex>> storage;  ///< classes that words point to
+    /// [word]: own looks of the voxels, [64]; empty if voxels have none.
     std::vector<const OwnLook*> looks;
-    std::vector<std::vector<OwnLook>> lookStorage;  ///< what those point into
+    std::vector<std::vector<OwnLook>> lookStorage;  ///< looks that `looks` points to
 };
 
-/// How to pack deltas.
 struct PackOptions {
     int sliceAxis = 2;
     Encoding encoding = Encoding::kChanges;
     std::span<const Slot> classOfSlot;  ///< [kSlotCount], entry 0 must be 0
-    /// May a voxel of the second slot go on as one of the first, which the slice before has? Both
-    /// can be seen and belong to different classes. Empty: never.
+    /// May a voxel with the second slot hold the first, which the slice before has? Both slots are
+    /// visible, of different classes. Empty: never.
     std::function<bool(Slot held, Slot slot)> holds;
-    /// Divides voxels into thin ones, which then are what voxels are. Slots are those of its
-    /// levels. Null: none.
+    /// Divides voxels into thin ones. Slots are then those of the mixer's levels. May be null.
     const ValueMixer* mixer = nullptr;
-    /// With a mixer, [classes]: how opaque a voxel of each is, as ValueMixer::mix takes it.
+    /// With a mixer, [class]: opacity of a voxel, as for ValueMixer::mix.
     std::span<const float> opacities = {};
-    /// Gives voxels looks of their own. Null: classes say all. With one that chooses classes there
-    /// has to be a mixer, and nothing is held.
+    /// Gives voxels own looks, or null. If it chooses classes, a mixer is needed and no holding.
     const VoxelPainter* painter = nullptr;
-    /// With a painter, may a voxel go on as the first, for which `holds` has to allow it as well?
-    /// Empty: never.
+    /// With a painter: may a voxel hold the first look? `holds` must agree. Empty: never.
     std::function<bool(const VoxelLook& held, const VoxelLook& look)> looksHold = {};
-    bool descending = false;  ///< as PackedDeltas has it
-    /// Joins slices, whose voxels then have its classes, or those of what the packer made of it
-    /// (DeltaPacker::joiner). Null: none are. Not with a mixer or a painter, or where voxels are
-    /// held.
+    bool descending = false;  ///< as in PackedDeltas
+    /// Joins slices. Voxels then have the classes of this joiner, or of the packer's coarser one
+    /// (DeltaPacker::joiner). May be null. Not with a mixer, a painter or holding.
     const SliceJoiner* joiner = nullptr;
     std::span<const glm::ivec2> slants = {};  ///< with a joiner, as Subdivision::joinedSlants
-    int joinedWithin = 1;                     ///< with one of as many, as Subdivision::joinedWithin
-    /// Leaves out blocks of voxels that it does not see. Not where voxels are held.
+    int joinedWithin = 1;                     ///< with a joiner, as Subdivision::joinedWithin
+    /// Leaves out blocks that the cone does not see. Not with holding.
     std::optional<SeenCone> seen = {};
     SlabLength slabLength = SlabLength::kByCounts;
 };
 
-/// Returns a volume's box in (slice, u, v) order, of what its voxels are divided into, or joined
-/// to.
+/// Returns a volume's box in (slice, u, v) order after dividing or joining.
 IndexBox boxOfSlices(const IndexBox& box, int sliceAxis, const Subdivision& parts);
 
-/// Takes the differences of consecutive slices, in one pass over the leaves that can be seen, and
-/// cuts them into slabs (SlabPlanner). With `holds`, a voxel keeps its class along the slice axis
-/// as long as it may: compared with its true slot each time, so that errors never add up. Linear in
-/// the active voxels; deterministic; multi-threaded.
+/// Takes the differences of consecutive slices in one pass over the visible leaves, and cuts slices
+/// into slabs (SlabPlanner). With `holds`, a voxel keeps its class while allowed, compared with its
+/// true slot each time, so errors do not add up. Linear in the active voxels; deterministic;
+/// multi-threaded.
 PackedDeltas packDeltas(const Volume& volume, const PackOptions& options);
 
-/// Slabs [first, last).
 struct SlabRange {
     int first;
     int last;
 };
 
-/// Packs deltas as packDeltas does, or those of a few slabs at a time, so that few words are in
-/// memory at once: then the volume is gone through once to find the slabs, and once for each part.
+/// Packs like packDeltas, or a few slabs at a time: one pass for the slabs and one per part.
 class DeltaPacker {
   public:
-    /// @param volume  must outlive this
+    /// @param volume  must outlive this object
     DeltaPacker(const Volume& volume, const PackOptions& options);
     ~DeltaPacker();
     DeltaPacker(DeltaPacker&&) noexcept;
 
-    /// Whether parts can be made: no voxel is held, divided or painted.
+    /// Whether packing in parts is possible: no voxel is held, divided or painted.
     bool canBeParted() const;
-    /// The most bytes that all words may take, of what is known before they are counted.
+    /// Upper bound of the bytes of all words, before they are counted.
     double mostBytes() const;
     PackedDeltas packAll();
-    /// Returns what packAll() does where words take no more than so many bytes; else the slabs,
-    /// without words. Only where parts can be made.
-    /// @param mostBytes  also of a part, unless it is of one slab
+    /// Like packAll() if words fit into `mostBytes`, else slabs without words. Needs canBeParted().
+    /// @param mostBytes  also the limit of a part, unless the part is a single slab
     PackedDeltas packOrPlan(double mostBytes);
-    /// What joined slices, once that is done: looks are rounded as far as they have to be.
+    /// The joiner, after packing: its looks are rounded as coarsely as necessary.
     const std::optional<SliceJoiner>& joiner() const;
-    /// The parts that the words are packed in, in increasing order, once there is a plan of some.
+    /// The parts to pack in increasing order, after packOrPlan() planned parts.
     const std::vector<SlabRange>& parts() const;
-    /// Returns all slabs, of which those of a part have their words.
+    /// Returns all slabs, with words for the slabs of a part.
     PackedDeltas pack(const SlabRange& part) const;
 
   private:

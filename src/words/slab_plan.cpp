@@ -12,28 +12,26 @@ namespace deltasplat {
 
 namespace {
 
-// How many slabs there are: each costs a layer, and the fewer there are, the farther a strip's rows
-// move along a sheet (src/composite/slab_renderer.cpp).
+// Each slab costs a layer. The fewer slabs, the farther a strip's rows move along a sheet
+// (src/composite/slab_renderer.cpp).
 constexpr int kMostSlabs = 8;
 constexpr int kLeastSlabs = 4;
-constexpr int kShortSlab = 4;  // blocks of 8 slices: slabs up to this length may be fewer
-// The most deltas that key slices may add, as a share of all others, as long as there may be fewer.
+constexpr int kShortSlab = 4;  // blocks of 8 slices: such short slabs may be fewer than kLeastSlabs
+// Slabs are joined while key slices add a larger share of deltas.
 constexpr double kMostKeyDeltas = 0.03;
 
-// Slabs take as long as they have words to splat, however many voxels of these change, and whole
-// ones a tenth less: nobody has to keep account of what waits.
+// Time grows with words, not with changed voxels. Whole slabs need a tenth less, as nothing waits.
 bool hasFewerWordsWhole(const PlannedSlab& slab) {
     return 9 * slab.seenWords < 10 * slab.words;
 }
 
-// Where few voxels of a word change, they may be stamped, which is faster than to sum all of them.
-// From how many on depends on the footprint (TileSplatter::leastStamps), which is not known here:
-// the least is right for the smallest ones.
+// Words with few changed voxels may be stamped, which is faster than summing. The threshold depends
+// on the footprint (TileSplatter::leastStamps), unknown here; this is the smallest footprint's.
 bool changesFew(const PlannedSlab& slab) {
     return slab.deltas < 12 * slab.words;
 }
 
-// @param writes  MaskCounts::writes of all that is visible, and of changes
+// @param writes  MaskCounts::writes of visible voxels and of changes
 bool isWhole(const PlannedSlab& slab, const SliceCounts& writes, Encoding encoding) {
     switch (encoding) {
         case Encoding::kChanges:
@@ -105,7 +103,6 @@ SlabPlan SlabPlanner::plan(Encoding encoding, SlabLength slabLength) const {
     return plan;
 }
 
-// Returns how many of the shortest slabs make one.
 int SlabPlanner::chooseLength() const {
     const int longest = std::max(kShortSlab, (shortest_.blocks() - 1) / kLeastSlabs + 1);
     int length = 1;
@@ -116,7 +113,7 @@ int SlabPlanner::chooseLength() const {
     return length;
 }
 
-// Returns the share of deltas that key slices add if `length` of the shortest slabs make one.
+// Returns the share of deltas that key slices add if slabs are `length` times the shortest.
 double SlabPlanner::keyShare(std::size_t length) const {
     double deltas = 0;
     double added = 0;
@@ -131,10 +128,10 @@ double SlabPlanner::keyShare(std::size_t length) const {
 StampCounts predictStamps(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap) {
     StampCounts stamps;
     if (volume.empty()) return stamps;
-    stamps.traditional = voxelsOf(volume.box);
-    const IndexBox box = permutedBox(volume.box, sliceAxis);
+    stamps.traditional = voxelsOf(volume.box());
+    const IndexBox box = permutedBox(volume.box(), sliceAxis);
     const SlabLayout layout = oneSlab(box);
-    const BlockReader reader(*volume.codes, nullptr, sliceAxis, slotMap);
+    const BlockReader reader(*volume.codes(), nullptr, sliceAxis, slotMap);
     const BlockWindows windows(reader, layout);
     const std::vector<BlockChanges> changes = findChanges(windows, layout);
     SlabPlanner planner(box);

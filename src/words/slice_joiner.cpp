@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joining slices, its inner loops compiled once for each SIMD level.
+// Joining slices; inner loops compiled once per SIMD level.
 #include "words/slice_joiner.h"
 
 #include <algorithm>
@@ -22,14 +22,14 @@
 #define DELTASPLAT_SUM_LEVELS
 namespace deltasplat {
 
-// Levels that sums are rounded to: floats without their lowest bits, as many to each octave.
+// Rounding levels of sums: floats without their lowest bits, equally many per octave.
 struct SumLevels {
-    // Of the 23 bits behind a float's point.
+    // Of a float's 23 mantissa bits.
     static constexpr int kDroppedBits = 13;
 
-    const float* shares;  // [classes]: what is added up
-    std::int32_t first;   // the bits of the least level
-    std::int32_t count;   // what is above them all has a level of its own
+    const float* shares;  // [class]: summands
+    std::int32_t first;   // bits of the smallest level
+    std::int32_t count;   // larger sums share one more level
 };
 
 }  // namespace deltasplat
@@ -67,7 +67,7 @@ void joinSumsKernel(const JoinedRows& rows, const SumLevels& levels, ClassIndex*
             auto sum = shareOf(0, n);
             for (std::size_t slice = 1; slice < rows.count; ++slice)
                 sum = hn::Add(sum, shareOf(slice, n));
-            // The bits of floats that are not negative are in the order of the numbers.
+            // Bits of non-negative floats sort like the floats.
             const auto bits =
                 hn::ShiftRight<SumLevels::kDroppedBits>(hn::Add(hn::BitCast(integers, sum), half));
             const auto level = hn::Min(hn::Sub(hn::Max(bits, least), least), last);
@@ -89,7 +89,7 @@ namespace {
 HWY_EXPORT(joinPairsKernel);
 HWY_EXPORT(joinSumsKernel);
 
-// Of what stands for a sum beyond all that can be told apart.
+// Stands for a sum too large to be told apart.
 constexpr float kOpaque = 0x1p100F;
 
 std::int32_t roundedBits(float value) {
@@ -121,13 +121,12 @@ SliceJoiner SliceJoiner::ofSums(const std::vector<double>& extinctions, int slic
         largest = std::max(largest, extinction);
         smallest = std::min(smallest, extinction);
     }
-    // A power of two, by which levels of other classes are the same numbers.
+    // A power of two keeps the levels independent of other classes.
     int exponent = 0;
     if (largest > 0) std::frexp(largest, &exponent);
     joiner.unit_ = std::ldexp(1.0, std::min(exponent, 1023));
-    // What is less than the least level looks like it: nothing that is seen becomes empty. 1024
-    // levels for each of 63 octaves, up to kMostJoined times the largest, are fewer than there are
-    // numbers for.
+    // Smaller sums get the smallest level, so nothing visible becomes empty. 1024 levels per octave
+    // for 63 octaves, up to kMostJoined times the largest, fit into the numbers.
     constexpr double kLeast = 0x1p-58;
     for (const double extinction : extinctions) {
         const double share = std::max(extinction / joiner.unit_, extinction > 0 ? kLeast : 0);

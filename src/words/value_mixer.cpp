@@ -23,27 +23,29 @@ bool isEven(const CodeBook& book) {
     return book.kind == CodeBook::Kind::kInteger || book.kind == CodeBook::Kind::kLinear;
 }
 
-// Buckets on either side of the one that 0 lies in.
+// Buckets on each side of 0.
 constexpr std::uint64_t kBuckets = 1 << 15;
 
 }  // namespace
 
 ValueMixer::ValueMixer(const Volume& volume, const Subdivision& parts, bool keepsLone)
-    : parts_(parts), keepsLone_(keepsLone), levels_(volume), ownLevel_(kCodeCount) {
-    levels_.codes = nullptr;
-    levels_.uncut = nullptr;
-    levels_.source = nullptr;
-    levels_.histogram.assign(kCodeCount, 0);
+    : parts_(parts), keepsLone_(keepsLone), ownLevel_(kCodeCount) {
+    VolumeData levels = volume.withoutVoxels().data();
+    levels.histogram.assign(kCodeCount, 0);
     const auto occurs = [](std::uint64_t count) { return count != 0; };
-    const auto& histogram = volume.histogram;
+    const auto& histogram = volume.histogram();
     const auto lowest = std::find_if(histogram.begin(), histogram.end(), occurs);
-    if (lowest == histogram.end()) return;
-    const auto highest = std::find_if(histogram.rbegin(), histogram.rend(), occurs).base() - 1;
-    if (isEven(volume.codeBook)) {
-        makeEvenLevels(volume, int(lowest - histogram.begin()), int(highest - histogram.begin()));
-    } else {
-        makeTableLevels(volume);
+    if (lowest != histogram.end()) {
+        const auto highest = std::find_if(histogram.rbegin(), histogram.rend(), occurs).base() - 1;
+        if (isEven(volume.codeBook())) {
+            makeEvenLevels(int(lowest - histogram.begin()), int(highest - histogram.begin()),
+                           levels);
+        } else {
+            makeTableLevels(volume, levels);
+        }
     }
+    levels_ = Volume(std::move(levels));
+    if (lowest == histogram.end()) return;
     for (int code = 0; code < kCodeCount; ++code) {
         if (histogram[code] == 0) continue;
         const int steps = (code - even_.lowest) * even_.perCode;
@@ -51,28 +53,29 @@ ValueMixer::ValueMixer(const Volume& volume, const Subdivision& parts, bool keep
     }
 }
 
-void ValueMixer::makeEvenLevels(const Volume& volume, int lowest, int highest) {
+void ValueMixer::makeEvenLevels(int lowest, int highest, VolumeData& levels) {
     const int span = highest - lowest;
-    // Values mixed by halves and quarters fall on levels, if there are enough of them.
+    // Values mixed by halves and quarters fall on levels, if there are enough.
     const int wanted = parts_.smallestShare();
-    // A power of two, so that a code's own value comes out exactly.
+    // A power of two, so that a code's own value is exact.
     const int room = span == 0 ? 1 : (kCodeCount - 1) / span;
     const int perCode = int(std::bit_floor(unsigned(std::min(wanted, room))));
     even_ = {Code(lowest), perCode, span * perCode};
-    std::fill_n(levels_.histogram.begin(), even_.last + 1, 1);
-    CodeBook& book = levels_.codeBook;
+    std::fill_n(levels.histogram.begin(), even_.last + 1, 1);
+    CodeBook& book = levels.codeBook;
+    const double lowestValue = book.valueOf(Code(lowest));
     const double step = book.kind == CodeBook::Kind::kLinear ? book.step : 1;
     book.kind = CodeBook::Kind::kLinear;
-    book.offset = volume.codeBook.valueOf(Code(lowest));
+    book.offset = lowestValue;
     book.step = step / even_.perCode;
 }
 
-void ValueMixer::makeTableLevels(const Volume& volume) {
+void ValueMixer::makeTableLevels(const Volume& volume, VolumeData& levels) {
     table_.ofCode.resize(kCodeCount);
     std::vector<double> values;
     for (int code = 0; code < kCodeCount; ++code) {
-        if (volume.histogram[code] == 0) continue;
-        table_.ofCode[code] = volume.codeBook.valueOf(Code(code));
+        if (volume.histogram()[code] == 0) continue;
+        table_.ofCode[code] = volume.codeBook().valueOf(Code(code));
         values.push_back(table_.ofCode[code]);
     }
     std::sort(values.begin(), values.end());
@@ -92,12 +95,12 @@ void ValueMixer::makeTableLevels(const Volume& volume) {
     table_.rungs.push_back({values.back(), 0, int(all.size()), 0});
     all.push_back(values.back());
     makeBuckets();
-    std::fill_n(levels_.histogram.begin(), all.size(), 1);
-    levels_.codeBook = CodeBook::ofTable(std::move(all));
+    std::fill_n(levels.histogram.begin(), all.size(), 1);
+    levels.codeBook = CodeBook::ofTable(std::move(all));
 }
 
-// Returns how many steps there are from each value to the next: those that mixing by quarters needs
-// or, where values lie far apart, 2^-14 of the larger one each; fewer if there is no room.
+// Returns the steps between neighbouring values: enough for mixing by quarters or, for distant
+// values, steps of 2^-14 of the larger value; fewer if there is no room.
 std::vector<int> ValueMixer::levelsBetween(const std::vector<double>& values) const {
     constexpr double kStepsPerValue = 16384;
     std::vector<int> steps;
@@ -109,14 +112,13 @@ std::vector<int> ValueMixer::levelsBetween(const std::vector<double>& values) co
         steps.push_back(std::max(int(wanted), parts_.smallestShare()));
         sum += steps.back();
     }
-    // One each is there in any case.
+    // One step each is always there.
     const double room = double(kCodeCount) - 1 - double(steps.size());
     if (sum <= room) return steps;
     for (int& count : steps) count = 1 + int(count * (room / sum));
     return steps;
 }
 
-// As fine as the range of magnitudes allows.
 void ValueMixer::makeBuckets() {
     std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
     std::uint64_t most = 0;
@@ -136,7 +138,7 @@ void ValueMixer::makeBuckets() {
     }
 }
 
-// In the order of values: negative ones come before 0 and what is nearer to it than any other.
+// In the order of values. The middle bucket has 0 and smaller magnitudes than all others.
 std::size_t ValueMixer::TableLevels::bucketOf(double value) const {
     const auto bits = std::bit_cast<std::uint64_t>(std::abs(value));
     const std::uint64_t place = bits < least ? 0 : 1 + ((bits - least) >> dropped);
@@ -152,7 +154,7 @@ int ValueMixer::levelOfValue(double value) const {
         rungs.begin() + table_.starts[bucket], rungs.begin() + table_.starts[bucket + 1], value,
         [](double number, const TableLevels::Rung& rung) { return number < rung.value; });
     const TableLevels::Rung& rung = behind[-1];
-    // Half a number may be none where numbers are smallest.
+    // Half of the smallest numbers may be 0.
     const double share = rung.half > 0 ? (value / 2 - rung.value / 2) / rung.half : 0;
     return rung.level + int(share * rung.steps + 0.5);
 }
@@ -174,7 +176,7 @@ MixMap::MixMap(std::span<const Slot> slotMap, std::span<const float> opacitiesOf
 
 namespace {
 
-// The values of a window's slots, NaN where there are none.
+// Returns the values of a window's slots, or NaN.
 std::array<double, MixWindow::kSide * MixWindow::kPlane> valuesOf(
     const MixWindow& window, const std::vector<double>& valueOfCode) {
     std::array<double, MixWindow::kSide * MixWindow::kPlane> values;
@@ -219,8 +221,7 @@ void ValueMixer::mix(const MixWindow& window, const MixMap& map,
 
 namespace {
 
-// Returns of the voxels of a block the least opacity among those that each is mixed with, and its
-// own: what is not active is mixed with nothing.
+// Returns per voxel of a block the least opacity of itself and the active voxels it is mixed with.
 template <typename OpacityOf>
 std::array<float, 512> leastAround(const MixWindow& window, bool alongSlicesOnly,
                                    const OpacityOf& opacityOf) {
@@ -228,8 +229,7 @@ std::array<float, 512> leastAround(const MixWindow& window, bool alongSlicesOnly
     std::array<float, MixWindow::kSide * MixWindow::kPlane> least;
     for (std::size_t n = 0; n < least.size(); ++n)
         least[n] = window.slots[n] == kEmptySlot ? 1.0f : opacityOf(window.slots[n]);
-    // Along one axis after the other, of each three that follow each other at the place of the
-    // first.
+    // Takes minima of three along each axis in turn, stored at the place of the first.
     const auto takeLeast = [&](int step) {
         for (std::size_t n = 0; n + 2 * std::size_t(step) < least.size(); ++n) {
             const float next = std::min(least[n + step], least[n + 2 * step]);
@@ -252,14 +252,13 @@ std::array<float, 512> leastAround(const MixWindow& window, bool alongSlicesOnly
 
 }  // namespace
 
-// Lets voxels be seen of whose opacity, above what is around them, nothing is left in what they
-// become.
-// @param places  of voxels that this may be true of
+// Shows voxels whose opacity above their surroundings vanishes in their parts.
+// @param places  candidates
 void ValueMixer::keepSeen(const MixWindow& window, const MixMap& map, const VoxelMasks& places,
                           std::span<BlockSlots> mixed) const {
     constexpr float kLeast = 1.0f / 32;
     const auto levelSlotOf = [&](Slot own) { return std::size_t(levelOf(Code(own - 1))) + 1; };
-    std::optional<std::array<float, 512>> around;  // for the few that need it
+    std::optional<std::array<float, 512>> around;  // computed only if needed
     for (std::size_t s = 0; s < places.size(); ++s) {
         for (std::uint64_t left = places[s]; left != 0; left &= left - 1) {
             const int n = std::countr_zero(left);
@@ -290,7 +289,7 @@ void ValueMixer::keepSeen(const MixWindow& window, const MixMap& map, const Voxe
     }
 }
 
-// What values are mixed as: levels, if they are even, else values; NaN for what is not active.
+// Returns the number that is mixed: a level if levels are even, else a value; NaN if inactive.
 double ValueMixer::numberOf(Slot slot) const {
     if (slot == kEmptySlot) return std::numeric_limits<double>::quiet_NaN();
     if (even_.perCode == 0) return table_.ofCode[std::size_t(slot - 1)];
@@ -301,7 +300,7 @@ int ValueMixer::levelOfNumber(double number) const {
     return even_.perCode == 0 ? levelOfValue(number) : int(number + 0.5);
 }
 
-// Mixes what is there at a place that lies half a voxel from a voxel's middle at most.
+// Interpolates at a place at most half a voxel from a voxel's centre.
 double ValueMixer::numberAt(const MixWindow& window, const glm::ivec3& place,
                             const glm::dvec3& off) const {
     const glm::ivec3 step(off.x < 0 ? -1 : 1, off.y < 0 ? -1 : 1, off.z < 0 ? -1 : 1);
@@ -317,12 +316,11 @@ double ValueMixer::numberAt(const MixWindow& window, const glm::ivec3& place,
                  off.z);
 }
 
-// Returns what becomes of the level, of those on the way from one to another, that is closest to
-// being so opaque: of some of them, then of some around that.
+// Returns the mapped slot closest to an opacity, of levels from one to another: coarse, then fine.
 Slot ValueMixer::slotAsOpaque(const MixMap& map, int from, int to, double opacity) const {
     constexpr int kSteps = 64;
     Slot closest = kEmptySlot;
-    double least = opacity;  // what nothing is off by
+    double least = opacity;  // error of the empty slot
     const auto look = [&](int first, int last) {
         int best = first;
         double leastHere = std::numeric_limits<double>::infinity();
@@ -347,8 +345,7 @@ Slot ValueMixer::slotAsOpaque(const MixMap& map, int from, int to, double opacit
     return closest;
 }
 
-// Makes what a voxel becomes as opaque as it is on average: what is seen of it lies between the
-// middles.
+// Gives each part the mean opacity within it, because the visible values lie between the centres.
 void ValueMixer::showShares(const MixWindow& window, const MixMap& map, const glm::ivec3& place,
                             std::span<BlockSlots> mixed) const {
     const glm::ivec3 per(parts_.slices, parts_.within, parts_.within);
@@ -357,7 +354,7 @@ void ValueMixer::showShares(const MixWindow& window, const MixMap& map, const gl
     forPartsOf(place, [&](std::size_t part, std::size_t slot) {
         const glm::ivec3 at(n / (per.y * per.z), n / per.z % per.y, n % per.z);
         ++n;
-        // Along an axis along which nothing is divided nothing is mixed.
+        // Nothing is mixed along an undivided axis.
         const auto levelAt = [&](const glm::dvec3& share) {
             const glm::dvec3 off = (glm::dvec3(at) + share) / glm::dvec3(per) - 0.5;
             const glm::dvec3 divided(glm::greaterThan(per, glm::ivec3(1)));
@@ -374,12 +371,11 @@ void ValueMixer::showShares(const MixWindow& window, const MixMap& map, const gl
 
 namespace {
 
-// By u, then v, then slice.
 bool liesBefore(const glm::ivec3& a, const glm::ivec3& b) {
     return std::tie(a.y, a.z, a.x) < std::tie(b.y, b.z, b.x);
 }
 
-// Adds the neighbours on both sides along an axis to places in order.
+// Adds both neighbours along an axis to ordered places.
 std::vector<glm::ivec3> widened(const std::vector<glm::ivec3>& places, const glm::ivec3& step) {
     const auto united = [](const auto& a, const auto& b) {
         std::vector<glm::ivec3> both;
@@ -395,7 +391,7 @@ std::vector<glm::ivec3> widened(const std::vector<glm::ivec3>& places, const glm
     return united(united(before, places), behind);
 }
 
-// Without any code if the lowest is above the highest.
+// Empty if the lowest code is above the highest.
 struct Range {
     Code lowest = std::numeric_limits<Code>::max();
     Code highest = 0;
@@ -406,11 +402,11 @@ struct Range {
     }
 };
 
-// Adds to the range of each block, in order, those of its neighbours on both sides along an axis.
+// Widens the range of each block, in order, by its neighbours along an axis.
 void addNeighbours(const std::vector<CodeBlock>& blocks, const glm::ivec3& step,
                    std::vector<Range>& ranges) {
     const std::vector<Range> own = ranges;
-    std::size_t next = 0;  // the first block that does not lie before the place looked for
+    std::size_t next = 0;  // first block not before `place`
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         const glm::ivec3 place = blocks[i].position + step;
         while (next < blocks.size() && liesBefore(blocks[next].position, place)) ++next;
@@ -430,7 +426,7 @@ MixedSight::MixedSight(const ValueMixer& mixer, std::span<const Slot> slotMap, b
 }
 
 bool MixedSight::canBeSeen(const MixWindow& window) const {
-    // Of empty slots, less one and without its sign, the lowest is nothing.
+    // Clearing the sign turns empty slots into the largest code, so they never become the lowest.
     constexpr int kMost = std::numeric_limits<int>::max();
     int lowest = kMost;
     int highest = kEmptySlot;
@@ -442,9 +438,8 @@ bool MixedSight::canBeSeen(const MixWindow& window) const {
     return highest != kEmptySlot && isSeenBetween(Code(lowest), Code(highest - 1));
 }
 
-// Returns a map [kSlotCount] that leaves the slots of codes which are seen, those of two clear ones
-// that may be seen mixed with each other, and those of all codes if clear ones lie on both sides of
-// what is seen: then clear blocks may be seen where they meet.
+// Returns a map [kSlotCount] of the codes to list: visible codes, pairs of clear codes that may be
+// visible mixed, and all codes if clear ones lie on both sides of the visible ones.
 std::vector<Slot> MixedSight::seenCodes(std::span<const std::uint64_t> histogram) const {
     std::vector<Code> codes;
     for (std::size_t code = 0; code < histogram.size(); ++code)
@@ -453,7 +448,7 @@ std::vector<Slot> MixedSight::seenCodes(std::span<const std::uint64_t> histogram
     for (std::size_t i = 0; i < codes.size(); ++i) {
         const std::size_t next = std::min(i + 1, codes.size() - 1);
         if (!isSeenBetween(codes[i], codes[next])) continue;
-        // Clear ones beside those that are seen are found from these.
+        // Visible codes lead to the clear ones beside them.
         const bool first = isSeenBetween(codes[i], codes[i]);
         const bool second = isSeenBetween(codes[next], codes[next]);
         if (first || !second) isSeen[i] = true;
@@ -472,11 +467,11 @@ std::vector<Slot> MixedSight::seenCodes(std::span<const std::uint64_t> histogram
     return map;
 }
 
-// What may be seen, or stays clear but lies beside it, and of that what is near enough.
+// Lists candidates and their neighbours, and keeps blocks near enough to something visible.
 std::vector<CodeBlock> MixedSight::listBlocks(const CodeTree& codes, int sliceAxis,
                                               std::span<const std::uint64_t> histogram) const {
     const std::vector<Slot> map = seenCodes(histogram);
-    // Before others ask for some of the blocks: it wants all.
+    // First, because the finder makes all blocks and not only some.
     const BlockFinder finder(codes, sliceAxis);
     const std::vector<CodeBlock> seen = deltasplat::listBlocks(codes, sliceAxis, map);
     constexpr double kMostNeighbours = 3;
@@ -519,7 +514,7 @@ std::vector<CodeBlock> MixedSight::listBlocks(const CodeTree& codes, int sliceAx
     }
     addNeighbours(blocks, {1, 0, 0}, ranges);
     if (alongAll) {
-        // In the order in which values are mixed: what lies across a corner comes by the same way.
+        // In mixing order, so that values across a corner arrive in the same way.
         addNeighbours(blocks, {0, 1, 0}, ranges);
         addNeighbours(blocks, {0, 0, 1}, ranges);
     }

@@ -13,72 +13,66 @@
 
 namespace deltasplat {
 
-/// What levels become, and how opaque that is.
 struct MixMap {
-    /// @param slotMap           [kSlotCount]: what becomes of the slots of levels; must outlive
-    /// this
-    /// @param opacitiesOfMapped  [what becomes of them]: of a voxel, above 0 for all that can be
-    /// seen;
-    ///                           if there are none, they are alike
+    /// @param slotMap            [kSlotCount]: maps slots of levels; must outlive this object
+    /// @param opacitiesOfMapped  [mapped slot]: of a voxel, above 0 if visible; empty: all equal
     MixMap(std::span<const Slot> slotMap, std::span<const float> opacitiesOfMapped);
 
     std::span<const Slot> slots;
-    std::vector<float> opacities;  ///< [kSlotCount]: of the slots of levels, 0 of what is not seen
-    std::vector<float> ofMapped;   ///< [what becomes of them]
-    bool areAlike = false;         ///< whether no opacities were given
-    std::size_t rising = 0;        ///< so many of the first opacities never fall
+    std::vector<float> opacities;  ///< [slot of a level]: 0 if not visible
+    std::vector<float> ofMapped;   ///< [mapped slot]
+    bool areAlike = false;         ///< no opacities were given
+    std::size_t rising = 0;        ///< number of first opacities that never fall
 };
 
-/// Divides voxels into thin ones. Their values are mixed from the voxels they lie between,
-/// linearly along each axis. What is not active has no value: a voxel beside it keeps its own, and
-/// so does one at the volume's end, so that a homogeneous slab stays what it is. Of a voxel of
-/// which next to nothing would be seen in the middles of what it becomes, each of these is as
-/// opaque as it is on average; or else the voxel stays as it is.
+/// Divides voxels into thin ones. Values are interpolated linearly along each axis. Inactive voxels
+/// have no value, so voxels beside them and at the volume's end keep their own value, and a
+/// homogeneous slab stays homogeneous. If next to nothing of a voxel would be visible at the
+/// centres of its parts, each part gets the mean opacity within it, or the voxel stays as it is.
 ///
-/// Mixed values are rounded to *levels*, at most as many as there are codes, and stand in for them.
-/// Every value that the volume has is a level, and there are evenly spaced ones between each and
-/// the next: as many as there is room for, most where values lie far apart for their size.
+/// Mixed values are rounded to *levels*, which replace codes and are at most as many. Every value
+/// of the volume is a level. As many evenly spaced levels as possible lie between neighbouring
+/// values, most where values lie far apart for their size.
 class ValueMixer {
   public:
-    /// @param keepsLone  whether voxels stay as they are of which next to nothing would be seen
+    /// @param keepsLone  keep voxels as they are that would almost vanish
     ValueMixer(const Volume& volume, const Subdivision& parts, bool keepsLone = false);
 
     const Subdivision& parts() const { return parts_; }
-    /// The volume as classification sees it: its code book and histogram are those of levels, of
-    /// which each that can come about counts once. It has no codes.
+    /// The volume for classification, without codes: code book and histogram are of levels, each
+    /// possible one counted once.
     const Volume& levels() const { return levels_; }
-    /// Returns the level that a code becomes where it is mixed with itself.
+    /// Returns the level of a code's own value.
     Code levelOf(Code code) const { return ownLevel_[code]; }
 
-    /// Mixes the blocks that a block becomes.
+    /// Divides a block.
     /// @param mixed  [parts.within along u][parts.slices][parts.within along v]
     void mix(const MixWindow& window, const MixMap& map, std::span<BlockSlots> mixed) const;
 
-    /// Calls use(part, n) for what the voxel at `place` (0..7 each) of a block becomes: voxel n of
-    /// one of the blocks of `mixed`.
+    /// Calls use(part, n) for the parts of a block's voxel (0..7 each): voxel n of mixed[part].
     template <typename Use>
     void forPartsOf(const glm::ivec3& place, const Use& use) const;
 
   private:
-    // Levels of codes that are not even lie between values that the volume has.
+    // Levels of uneven codes: between the values of the volume.
     struct TableLevels {
         struct Rung {
             double value;
-            double half;  // of the way to the next rung
+            double half;  // half the distance to the next rung
             int level;
-            int steps;  // levels up to the next rung
+            int steps;  // number of levels up to the next rung
         };
-        std::vector<Rung> rungs;     // values that the volume has, in increasing order
+        std::vector<Rung> rungs;     // values of the volume, in increasing order
         std::vector<double> ofCode;  // [kCodeCount]
-        // Where rungs of a bucket begin: of numbers with the same leading bits.
+        // First rung per bucket. A bucket has the numbers with the same leading bits.
         std::vector<int> starts;
-        std::uint64_t least = 0;  // magnitude that is not 0, its bits
-        int dropped = 0;          // low bits
+        std::uint64_t least = 0;  // bits of the smallest magnitude other than 0
+        int dropped = 0;          // number of low bits that buckets ignore
         std::size_t bucketOf(double value) const;
     };
 
-    void makeEvenLevels(const Volume& volume, int lowest, int highest);
-    void makeTableLevels(const Volume& volume);
+    void makeEvenLevels(int lowest, int highest, VolumeData& levels);
+    void makeTableLevels(const Volume& volume, VolumeData& levels);
     std::vector<int> levelsBetween(const std::vector<double>& values) const;
     void makeBuckets();
     int levelOfValue(double value) const;
@@ -114,20 +108,18 @@ void ValueMixer::forPartsOf(const glm::ivec3& place, const Use& use) const {
     }
 }
 
-/// Tells which blocks may be seen where a voxel's neighbours have a say: once voxels are divided,
-/// mixed values lie between those of a block and of its neighbours, and may be seen where the
-/// voxels themselves are clear; and so it is beside a surface.
+/// Finds the blocks that may be visible if neighbours have a say. Mixed values lie between those of
+/// a block and its neighbours and may be visible although the voxels themselves are clear. The same
+/// happens beside a surface.
 class MixedSight {
   public:
-    /// @param slotMap    [kSlotCount]: 0 for the slots of levels that are clear
-    /// @param byAllSides  whether neighbours along all axes have a say, though voxels be divided
-    ///                   along none; then places without any active voxel are listed, too
+    /// @param slotMap     [kSlotCount]: 0 for the slots of clear levels
+    /// @param byAllSides  neighbours along all axes count, divided or not; lists empty places, too
     MixedSight(const ValueMixer& mixer, std::span<const Slot> slotMap, bool byAllSides);
 
-    /// Whether any voxel may be seen that is mixed within a window.
+    /// Whether any voxel mixed within a window may be visible.
     bool canBeSeen(const MixWindow& window) const;
-    /// Lists the blocks that may be seen, ordered by u, then v, then slice. Slots of tiles are
-    /// code + 1.
+    /// Lists the blocks that may be visible, by u, then v, then slice. Tile slots are code + 1.
     /// @param histogram  of the volume's codes
     std::vector<CodeBlock> listBlocks(const CodeTree& codes, int sliceAxis,
                                       std::span<const std::uint64_t> histogram) const;
@@ -142,7 +134,7 @@ class MixedSight {
 
     const ValueMixer& mixer_;
     bool byAllSides_;
-    std::vector<int> before_;  // [kSlotCount]: how many levels before each can be seen
+    std::vector<int> before_;  // [slot]: number of visible levels before it
 };
 
 }  // namespace deltasplat

@@ -13,7 +13,7 @@ namespace deltasplat {
 
 namespace {
 
-// Takes all words out, and keeps their memory.
+// Removes all words but keeps their memory.
 void clear(PackedColumns& packed) {
     packed.words.clear();
     packed.storage.clear();
@@ -39,7 +39,7 @@ void WordWriter::begin(std::size_t rows, std::vector<PackedColumns>& room) {
     payForWords();
 }
 
-// What is not used of it takes no memory, but for the rest of a large page.
+// Unused reserved memory costs nothing, except within a large page.
 void WordWriter::reserve(std::size_t row, std::size_t most) {
     if (!range_.storesWords) return;
     PackedColumns& packed = rows_[row];
@@ -95,8 +95,7 @@ void WordWriter::finish(std::vector<PackedColumns>& room) {
     room = std::exchange(rows_, std::move(sorted));
 }
 
-// Whether a word is needed of what a slice shows. Of slabs that are walked from the last slice on,
-// also what the slice before a change shows.
+// Whether a slice's word is made. Walking backwards also needs the slice before a change.
 bool WordWriter::isNeeded(int slice, std::uint64_t visible, std::uint64_t changed) const {
     if (!range_.storesWords) return false;
     const bool isKey = range_.layout.startsLaterSlab(slice);
@@ -110,14 +109,12 @@ bool WordWriter::isNeeded(int slice, std::uint64_t visible, std::uint64_t change
            ((encoding_ != Encoding::kChanges || isKey) && visible != 0);
 }
 
-// Whether the slab of a slice is whole, or may become so.
 bool WordWriter::mayBeWhole(int slice) const {
     if (range_.planned.empty()) return encoding_ != Encoding::kChanges;
     return range_.planned[std::size_t(range_.layout.slabOf(slice >> 3))].whole;
 }
 
-// Of slabs of changes that are walked from the last slice on, a word says what a block becomes
-// where the slice behind is other, or all where a slab ends.
+// Walking backwards, words of deltas need classes only before a change or at the slab's end.
 void WordWriter::dropUnneeded(std::vector<PendingWord>& words) const {
     for (std::size_t i = 0; i < words.size(); ++i) {
         const int slice = words[i].slice;
@@ -129,22 +126,19 @@ void WordWriter::dropUnneeded(std::vector<PendingWord>& words) const {
 
 namespace {
 
-// Of 64 voxels.
 constexpr std::array<OwnLook, 64> kNoLooks{};
 
-// Whether a word is of the next slice of the same block.
 bool follows(const PendingWord& before, const PendingWord& word) {
     return before.block == word.block && before.slice + 1 == word.slice;
 }
 
-// Puts the packers' words in the order of slices. Runs of columns do so at once: each knows where
-// its words of a slice begin, behind those of the runs before.
+// Moves words into slice order. Parallel runs have places of their own, one run after the other.
 class WordCollector {
   public:
     WordCollector(std::vector<PackedColumns*> columns, const SlabLayout& layout, bool hasLooks,
                   PackedDeltas& packed)
         : columns_(std::move(columns)), layout_(layout), hasLooks_(hasLooks), packed_(packed) {
-        // Places of words take no more than a small share of what words do.
+        // Tables of places must stay small compared to the words.
         constexpr std::size_t kWordsForPlace = 16;
         std::size_t words = 0;
         for (const PackedColumns* column : columns_) words += column->words.size();
@@ -158,7 +152,7 @@ class WordCollector {
             forWords(run, [&](std::size_t, const NeededWord& word) { ++placeOf(run, word.slice); });
         });
         beginSlices();
-        // Not cleared here: who writes words first has their memory near.
+        // Not cleared, because the thread that first writes words should own their memory.
         packed_.words.resize(packed_.begins.back());
         if (hasLooks_) packed_.looks.resize(packed_.words.size());
         packed_.storage.resize(columns_.size());
@@ -175,9 +169,8 @@ class WordCollector {
     }
 
   private:
-    // A word as it will be: what has changed is told from the slice that is walked before.
+    // A final word, with changes relative to the previously walked slice.
     using NeededWord = PendingWord;
-    // Calls use(column, word) for the words of a run that are needed.
     template <typename Use>
     void forWords(std::size_t run, const Use& use) {
         const auto begin = [&](std::size_t i) { return i * columns_.size() / places_.size(); };
@@ -200,7 +193,7 @@ class WordCollector {
         }
     }
 
-    // What changes from a slice to the one behind it changes back on the way from that one.
+    // Walked backwards, a change happens in the slice before.
     template <typename Use>
     void addDescending(const std::vector<PendingWord>& words, std::size_t number,
                        const Use& use) const {
@@ -213,7 +206,7 @@ class WordCollector {
         use(turned, layout_.endsSlab(word.slice));
     }
 
-    // Of a run, how many words of a slice there are; then where the next one goes.
+    // Number of a run's words in a slice; later the place of the next one.
     std::size_t& placeOf(std::size_t run, int slice) {
         return places_[run][std::size_t(slice - packed_.box.min.x)];
     }
@@ -245,8 +238,8 @@ class WordCollector {
     std::vector<std::vector<std::size_t>> places_;  // [run][slice]
 };
 
-// Returns pieces of 64, of words that point to any, as many as there are.
-// @param places  [word]: where its piece begins in the result
+// Returns the pieces of 64 that words point to.
+// @param places  [word]: start of its piece in the result
 template <typename Pieces>
 Pieces sorted(const Pieces& pieces, const std::vector<PendingWord>& words,
               const std::vector<std::size_t>& places, std::size_t count) {
@@ -265,7 +258,7 @@ std::uint64_t changedBehind(const std::vector<PendingWord>& words, std::size_t w
 }
 
 PackedColumns sortClasses(const IndexBox& box, const PackedColumns& columns) {
-    // [slice]: how many words it has; then where its next one goes.
+    // [slice]: number of words; later the place of the next one.
     std::vector<std::size_t> next(std::size_t(box.dims().x));
     const auto ofSlice = [&](const PendingWord& word) -> std::size_t& {
         return next[std::size_t(word.slice - box.min.x)];

@@ -28,17 +28,18 @@ using namespace deltasplat;
 
 // [z][y][x]; what is not active is the background.
 std::vector<std::uint8_t> valuesOf(const Volume& volume) {
-    const glm::ivec3 dims = volume.box.dims();
+    const glm::ivec3 dims = volume.box().dims();
     std::vector<std::uint8_t> values;
-    values.reserve(std::size_t(volume.box.voxels()));
-    const openvdb::tree::ValueAccessor<const CodeTree::Tree> codes(volume.codes->tree());
+    values.reserve(std::size_t(volume.box().voxels()));
+    const openvdb::tree::ValueAccessor<const CodeTree::Tree> codes(volume.codes()->tree());
     for (int z = 0; z < dims.z; ++z) {
         for (int y = 0; y < dims.y; ++y) {
             for (int x = 0; x < dims.x; ++x) {
-                const glm::ivec3 at = volume.box.min + glm::ivec3(x, y, z);
+                const glm::ivec3 at = volume.box().min + glm::ivec3(x, y, z);
                 Code code = 0;
                 const bool isActive = codes.probeValue({at.x, at.y, at.z}, code);
-                const double value = isActive ? volume.codeBook.valueOf(code) : volume.background;
+                const double value =
+                    isActive ? volume.codeBook().valueOf(code) : volume.background();
                 values.push_back(std::uint8_t(std::clamp(std::lround(value), 0L, 255L)));
             }
         }
@@ -61,7 +62,7 @@ struct Between {
 void enlarge(int factor, const char* input, const std::filesystem::path& folder) {
     const Volume volume = readVolume(input);
     const std::vector<std::uint8_t> values = valuesOf(volume);
-    const glm::ivec3 dims = volume.box.dims();
+    const glm::ivec3 dims = volume.box().dims();
     const glm::ivec3 large = factor * dims;
     std::string name = std::filesystem::path(input).filename().string();
     name = name.substr(0, name.find_first_of("_."));

@@ -86,12 +86,12 @@ TEST_F(ConvertData, EveryRawFileKeepsItsVoxelsAndComesBack) {
             printSizes(file, "out.vdb");
             const auto grid = readGrid<openvdb::FloatGrid>("out.vdb");
             ASSERT_TRUE(grid);
-            EXPECT_EQ(grid->saveFloatAsHalf(), volume.valueMax <= 2048);
-            EXPECT_TRUE(grid->tree().hasSameTopology(volume.codes->tree()));
-            EXPECT_EQ(grid->activeVoxelCount(), std::uint64_t(volume.box.voxels()));
+            EXPECT_EQ(grid->saveFloatAsHalf(), volume.valueMax() <= 2048);
+            EXPECT_TRUE(grid->tree().hasSameTopology(volume.codes()->tree()));
+            EXPECT_EQ(grid->activeVoxelCount(), std::uint64_t(volume.box().voxels()));
             std::uint64_t wrong = 0;
-            for (auto code = volume.codes->tree().cbeginValueOn(); code; ++code) {
-                const double value = volume.codeBook.valueOf(*code);
+            for (auto code = volume.codes()->tree().cbeginValueOn(); code; ++code) {
+                const double value = volume.codeBook().valueOf(*code);
                 if (double(grid->tree().getValue(code.getCoord())) != value) ++wrong;
             }
             EXPECT_EQ(wrong, 0u);

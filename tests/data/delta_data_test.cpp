@@ -56,9 +56,9 @@ openvdb::MetaMap::Ptr comparable(const openvdb::GridBase& grid) {
 }
 
 void expectSameGrid(const Volume& source, const Volume& restored) {
-    ASSERT_TRUE(source.source && restored.source);
-    const openvdb::GridBase::Ptr kept = toOpenVdb(source.source->grid);
-    const openvdb::GridBase::Ptr back = toOpenVdb(restored.source->grid);
+    ASSERT_TRUE(source.source() && restored.source());
+    const openvdb::GridBase::Ptr kept = toOpenVdb(source.source()->grid);
+    const openvdb::GridBase::Ptr back = toOpenVdb(restored.source()->grid);
     const openvdb::GridBase &a = *kept, &b = *back;
     EXPECT_EQ(a.type(), b.type());
     EXPECT_EQ(a.transform(), b.transform());
@@ -67,16 +67,16 @@ void expectSameGrid(const Volume& source, const Volume& restored) {
 }
 
 void expectRestored(const Volume& source, const DeltaFileEntry& entry, const Volume& restored) {
-    SCOPED_TRACE(source.name);
+    SCOPED_TRACE(source.name());
     const VolumeComparison same = compareVolumes(source, restored);
     EXPECT_TRUE(same.typeEqual && same.classEqual && same.nameEqual && same.transformEqual);
-    EXPECT_EQ(source.space, restored.space);
+    EXPECT_EQ(source.space(), restored.space());
     EXPECT_EQ(same.activeMismatch, 0u);
     EXPECT_EQ(same.backgroundError, 0);
     EXPECT_EQ(same.maxError, 0);
     EXPECT_EQ(entry.maxError, 0);
     EXPECT_TRUE(entry.lossless);
-    if (source.hasBackground) expectSameGrid(source, restored);
+    if (source.hasBackground()) expectSameGrid(source, restored);
 }
 
 // Volumes of one file, and what was said of them as they became delta grids.
@@ -151,7 +151,7 @@ TEST(DeltaData, TolerancesHold) {
         const Volume source = readVolume(data / file, keeping());
         DeltaFileOptions options;
         const std::uint64_t exact = DeltaFile().add(source, options).deltas;
-        options.tolerance.value = 0.02 * (source.valueMax - source.valueMin);
+        options.tolerance.value = 0.02 * (source.valueMax() - source.valueMin());
         for (const bool pack : {false, true}) {
             options.pack = pack;
             DeltaFile deltas;

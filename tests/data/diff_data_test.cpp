@@ -11,6 +11,7 @@
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/ingest/list_grids.h"
 #include "deltasplat/ingest/read_volume.h"
+#include "support/changed_volume.h"
 #include "support/kept_grid.h"
 #include "volume/code_tree.h"
 #include "volume/tree_grid.h"
@@ -77,18 +78,18 @@ TEST_F(DiffData, OneVoxelOfEveryRawFileIsFound) {
             const Volume volume = read(file);
             const VolumeComparison same = compareVolumes(volume, volume);
             EXPECT_TRUE(same.equal());
-            EXPECT_EQ(same.voxels, volume.activeCount);
+            EXPECT_EQ(same.voxels, volume.activeCount());
 
-            const glm::ivec3 at = randomPlace(volume.box, random);
+            const glm::ivec3 at = randomPlace(volume.box(), random);
             const Coord place(at.x, at.y, at.z);
-            auto codes = std::make_shared<CodeTree>(*volume.codes);
+            auto codes = std::make_shared<CodeTree>(*volume.codes());
             const Code before = codes->tree().getValue(place);
             const Code after = Code(before ^ (1 + random() % 100));
             codes->tree().setValueOn(place, after);
             Volume changed = volume;
-            changed.codes = codes;
-            expectOneChange(compareVolumes(volume, changed), at, volume.codeBook.valueOf(before),
-                            volume.codeBook.valueOf(after));
+            test::changed(changed)->codes = codes;
+            expectOneChange(compareVolumes(volume, changed), at, volume.codeBook().valueOf(before),
+                            volume.codeBook().valueOf(after));
             ++count;
         }
     }
@@ -109,7 +110,7 @@ TEST_F(DiffData, OneVoxelOfEveryFloatGridIsFound) {
                 ASSERT_TRUE(source);
                 const auto grid = source->deepCopy();
                 auto voxel = grid->beginValueOn();
-                for (std::uint64_t n = 0; n < volume.activeCount / 2 && !voxel.isVoxelValue();) {
+                for (std::uint64_t n = 0; n < volume.activeCount() / 2 && !voxel.isVoxelValue();) {
                     n += voxel.getVoxelCount();
                     ++voxel;
                 }
@@ -117,9 +118,9 @@ TEST_F(DiffData, OneVoxelOfEveryFloatGridIsFound) {
                 const float before = grid->tree().getValue(place);
                 grid->tree().setValueOn(place, before + 0.5F);
                 Volume changed = volume;
-                SourceGrid changedSource = *volume.source;
+                SourceGrid changedSource = *volume.source();
                 changedSource.grid = fromOpenVdb(grid);
-                changed.source = std::make_shared<SourceGrid>(changedSource);
+                test::changed(changed)->source = std::make_shared<SourceGrid>(changedSource);
                 expectOneChange(compareVolumes(volume, changed), {place.x(), place.y(), place.z()},
                                 before, before + 0.5F);
                 ++count;

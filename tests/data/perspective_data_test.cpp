@@ -76,10 +76,10 @@ TEST_P(PerspectiveData, aFlightIntoTheVolumeHasNoJump) {
         GTEST_SKIP() << "walls thinner than a step of the flight: passing one is a jump for a ray "
                         "marcher as well";
     }
-    const IndexBox& box = volume_.box;
+    const IndexBox& box = volume_.box();
     const auto worldAt = [&](glm::dvec3 share) {
         const glm::dvec3 index = glm::dvec3(box.min) + share * glm::dvec3(box.max - box.min);
-        return glm::dvec3(volume_.worldFromIndex * glm::dvec4(index, 1));
+        return glm::dvec3(volume_.worldFromIndex() * glm::dvec4(index, 1));
     };
     const glm::dvec3 from = worldAt({1.2, 0.0, 1.2});
     const glm::dvec3 to = worldAt({0.7, 0.5, 0.6});

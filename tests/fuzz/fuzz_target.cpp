@@ -22,12 +22,13 @@ namespace {
 
 void check(const Volume& volume) {
     std::uint64_t sum = 0;
-    for (const std::uint64_t count : volume.histogram) sum += count;
-    require(volume.histogram.size() == std::size_t(kCodeCount), "histogram has 65536 places");
-    require(sum == volume.activeCount, "histogram adds up to activeCount");
-    require(volume.codes->tree().activeVoxelCount() == volume.activeCount, "tree has activeCount");
-    require(volume.valueMin <= volume.valueMax, "valueMin <= valueMax");
-    require(volume.empty() || std::uint64_t(volume.box.voxels()) >= volume.activeCount,
+    for (const std::uint64_t count : volume.histogram()) sum += count;
+    require(volume.histogram().size() == std::size_t(kCodeCount), "histogram has 65536 places");
+    require(sum == volume.activeCount(), "histogram adds up to activeCount");
+    require(volume.codes()->tree().activeVoxelCount() == volume.activeCount(),
+            "tree has activeCount");
+    require(volume.valueMin() <= volume.valueMax(), "valueMin <= valueMax");
+    require(volume.empty() || std::uint64_t(volume.box().voxels()) >= volume.activeCount(),
             "box holds all active voxels");
 }
 
@@ -45,19 +46,19 @@ void digest(const T& value) {
 }
 
 void digest(const Volume& volume) {
-    digest(volume.box.dims());
-    digest(volume.worldFromIndex);
-    for (auto voxel = volume.codes->tree().cbeginValueOn(); voxel; ++voxel) {
+    digest(volume.box().dims());
+    digest(volume.worldFromIndex());
+    for (auto voxel = volume.codes()->tree().cbeginValueOn(); voxel; ++voxel) {
         digest(voxel.getCoord().asVec3i());
-        digest(volume.codeBook.valueOf(voxel.getValue()));
+        digest(volume.codeBook().valueOf(voxel.getValue()));
     }
 }
 
 // Renders what is small enough to be done in a moment.
 void renderSmall(const Volume& volume) {
-    const glm::ivec3 dims = volume.box.dims();
+    const glm::ivec3 dims = volume.box().dims();
     const int longest = std::max({dims.x, dims.y, dims.z});
-    if (volume.activeCount >= 1'000'000 || longest >= 256) return;
+    if (volume.activeCount() >= 1'000'000 || longest >= 256) return;
     RenderOptions options;
     options.camera.sizePixels = {8, 8};
     options.optics.transferFunction = defaultRamp(volume);

@@ -14,6 +14,7 @@
 
 #include "deltasplat/render_aovs.h"
 #include "deltasplat/render_deep.h"
+#include "support/changed_volume.h"
 #include "support/error_of.h"
 #include "support/same_picture.h"
 #include "support/some_scene.h"
@@ -302,8 +303,8 @@ Volume ball(double radius) {
         const double r = glm::length(glm::dvec3(x, y, z) - middle);
         return int(30000 + 1000 * (radius - r));
     });
-    volume.worldFromIndex = glm::dmat4(0.5);
-    volume.worldFromIndex[3] = {-12, -12, -12, 1};
+    test::changed(volume)->worldFromIndex = glm::dmat4(0.5);
+    test::changed(volume)->worldFromIndex[3] = {-12, -12, -12, 1};
     return volume;
 }
 

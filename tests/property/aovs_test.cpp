@@ -8,6 +8,7 @@
 #include <string>
 
 #include "deltasplat/render_aovs.h"
+#include "support/changed_volume.h"
 #include "support/error_of.h"
 #include "support/some_scene.h"
 
@@ -115,8 +116,8 @@ TEST(Aovs, emissionOfWhatShinesIsThePicture) {
 TEST(Aovs, depthAndPlaceAreThoseOfAPlate) {
     Volume volume = test::makeVolume({{0, 0, 0}, {40, 40, 12}},
                                      [](int, int, int z) { return z == 7 ? 200 : 0; });
-    volume.worldFromIndex = glm::dmat4(0.5);
-    volume.worldFromIndex[3] = {-10, 3, 20, 1};
+    test::changed(volume)->worldFromIndex = glm::dmat4(0.5);
+    test::changed(volume)->worldFromIndex[3] = {-10, 3, 20, 1};
     const double plate = 20 + 7 * 0.5;
     int unseen = 0;
     for (const Projection projection :

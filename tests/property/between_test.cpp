@@ -234,7 +234,7 @@ TEST(Between, findsWhatIsSeenAcrossCorners) {
 
 TEST(Between, GoesByVoxelsNotByTheBox) {
     Volume volume = throughRaw(noise({8, 8, 8}), glm::dvec3(1));
-    volume.box.max.x = volume.box.min.x + (1 << 29);
+    test::changed(volume)->box.max.x = volume.box().min.x + (1 << 29);
     RenderOptions options;
     options.optics.transferFunction = testTransferFunction(0.7);
     options.camera.sizePixels = {16, 16};

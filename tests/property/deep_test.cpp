@@ -13,6 +13,7 @@
 #include "deltasplat/cut/cut_volume.h"
 #include "deltasplat/memory_limit.h"
 #include "deltasplat/render_deep.h"
+#include "support/changed_volume.h"
 #include "support/error_of.h"
 #include "support/same_picture.h"
 #include "support/some_scene.h"
@@ -122,7 +123,7 @@ std::shared_ptr<const Volume> plateAcross(int axis, int slice) {
     Volume volume = test::makeVolume(
         box, [&](int x, int y, int z) { return glm::ivec3(x, y, z)[axis] == slice ? 255 : 0; },
         {1, 1.5, 0.7});
-    volume.worldFromIndex[3] = {-20, 7, 3, 1};
+    test::changed(volume)->worldFromIndex[3] = {-20, 7, 3, 1};
     return std::make_shared<const Volume>(std::move(volume));
 }
 
@@ -156,12 +157,12 @@ struct Sight {
     // How deep a plane across an axis is crossed.
     double depthAt(const Volume& volume, int axis, double index) const {
         const double place =
-            volume.worldFromIndex[3][axis] + volume.worldFromIndex[axis][axis] * index;
+            volume.worldFromIndex()[3][axis] + volume.worldFromIndex()[axis][axis] * index;
         return (place - from[axis]) / towards[axis] * depthOfOne;
     }
     bool isMostAlong(const Volume& volume, int axis) const {
         const auto steps = [&](int i) {
-            return std::abs(towards[i]) / volume.worldFromIndex[i][i];
+            return std::abs(towards[i]) / volume.worldFromIndex()[i][i];
         };
         return steps(axis) > steps((axis + 1) % 3) && steps(axis) > steps((axis + 2) % 3);
     }

@@ -180,7 +180,7 @@ openvdb::MetaMap ownMetadata(const openvdb::MetaMap& metadata) {
 
 template <typename Grid>
 void expectEqual(const Grid& expected, const Volume& restored, const PlainVolume& plain) {
-    ASSERT_TRUE(restored.source);
+    ASSERT_TRUE(restored.source());
     const auto kept = keptGrid<Grid>(restored);
     ASSERT_TRUE(kept);
     const Grid& grid = *kept;
@@ -234,7 +234,7 @@ DeltaFileEntry expectComesBack(const Grid& source, DeltaFileOptions options, boo
     EXPECT_EQ(entry.maxError, 0);
     EXPECT_TRUE(entry.lossless);
     const Volume restored = readVolume("delta.vdb", reading);
-    EXPECT_EQ(restored.origin->deltas, entry.deltas);
+    EXPECT_EQ(restored.origin()->deltas, entry.deltas);
     expectEqual(source, restored, testing::readPlainDeltas("delta.vdb", "density"));
     return entry;
 }
@@ -466,9 +466,9 @@ TEST(DeltaFile, LinearBooksKeepToHalfAStepAndSayTheLargestError) {
             largestError(values, testing::readPlainDeltas("delta.vdb", "waves_95x41x50_float32"));
         EXPECT_GT(entry.maxError, 0);
         EXPECT_FALSE(entry.lossless);
-        EXPECT_LE(entry.maxError, volume.codeBook.step / 2);
+        EXPECT_LE(entry.maxError, volume.codeBook().step / 2);
         EXPECT_EQ(entry.maxError, found);
-        EXPECT_EQ(readVolume("delta.vdb").origin->maxError, entry.maxError);
+        EXPECT_EQ(readVolume("delta.vdb").origin()->maxError, entry.maxError);
         DeltaFileOptions strict = codesOnly();
         strict.maxError = entry.maxError * 0.99;
         EXPECT_THROW(DeltaFile().add(volume, strict), Error);
@@ -496,7 +496,7 @@ void expectWithin(const std::vector<float>& values, const Volume& volume, int sl
     EXPECT_EQ(voxels.add(volume, options).maxError, entry.maxError);
     voxels.write("voxels.vdb");
     expectSameVolume(readVolume("held.vdb"), readVolume("voxels.vdb"));
-    const PlainVolume plain = testing::readPlainDeltas("held.vdb", volume.name);
+    const PlainVolume plain = testing::readPlainDeltas("held.vdb", volume.name());
     double largest = 0;
     std::uint64_t over = 0, filled = 0;
     std::size_t i = 0;
@@ -529,7 +529,7 @@ TEST(DeltaFile, ToleranceBoundsEveryVoxelsError) {
         for (float& value : values) value = std::round(value * 4) / 4 + 0.0f;
         testing::writeBytes(kWavesFile, testing::bytesOf(values));
         const Volume volume = readKept(kWavesFile);
-        ASSERT_TRUE(volume.codeBook.isExact());
+        ASSERT_TRUE(volume.codeBook().isExact());
         for (int axis = 0; axis < 3; ++axis) {
             expectWithin(values, volume, axis, {0.1, 0});
             expectWithin(values, volume, axis, {0, 9});
@@ -547,7 +547,7 @@ TEST(DeltaFile, ToleranceLeavesRoomForALinearBook) {
     expectWithin(values, volume, 2, {0, 5});
     // Less than half a step cannot be kept.
     DeltaFileOptions options;
-    options.tolerance.value = volume.codeBook.step / 3;
+    options.tolerance.value = volume.codeBook().step / 3;
     EXPECT_THROW(DeltaFile().add(volume, options), Error);
 }
 
@@ -564,8 +564,8 @@ TEST(DeltaFile, RelativeToleranceOfValuesOfManyKinds) {
     ReadOptions reading;
     reading.relativeError = 0.05;
     const Volume volume = readKept(kWavesFile, reading);
-    EXPECT_EQ(volume.codeBook.name(), "table");
-    EXPECT_FALSE(volume.codeBook.isExact());
+    EXPECT_EQ(volume.codeBook().name(), "table");
+    EXPECT_FALSE(volume.codeBook().isExact());
     expectWithin(values, volume, 2, {0.1, 0});
     expectWithin(values, volume, 0, {0.1, 1e4});
     DeltaFileOptions options;
@@ -635,7 +635,7 @@ TEST(DeltaFile, DenseVolumesOfManyValuesComeBackAsTheyAreRead) {
             const std::string name = "waves_95x41x50_" + type;
             testing::writeBytes(name + ".raw", bytes);
             const Volume volume = readKept(name + ".raw");
-            ASSERT_TRUE(volume.codeBook.pieces);
+            ASSERT_TRUE(volume.codeBook().pieces);
             DeltaFileOptions options;
             options.sliceAxis = axis;
             options.keyInterval = axis == 1 ? 16 : 0;
@@ -648,10 +648,10 @@ TEST(DeltaFile, DenseVolumesOfManyValuesComeBackAsTheyAreRead) {
             // Of what rests, no more than its ends is spoken of.
             EXPECT_LT(entry.deltas, std::uint64_t(0.8 * double(floats.size())));
             const Volume restored = readKept("delta.vdb");
-            EXPECT_EQ(restored.origin->codeBook, book);
+            EXPECT_EQ(restored.origin()->codeBook, book);
             expectSameVolume(volume, restored);
             // What lies outside is what a converted source has there.
-            EXPECT_EQ(backgroundOf(restored.source->grid), backgroundOf(volume.source->grid));
+            EXPECT_EQ(backgroundOf(restored.source()->grid), backgroundOf(volume.source()->grid));
             const PlainVolume plain = testing::readPlainDeltas("delta.vdb", name);
             std::uint64_t wrong = 0;
             for (std::size_t i = 0; i < floats.size(); ++i) {
@@ -688,7 +688,7 @@ TEST(DeltaFile, WhoIsGivenTheValuesIsNotWarnedOfCodes) {
             ReadOptions reading;
             reading.keepSource = keeps;
             const Volume volume = readVolume(name, reading, listener);
-            EXPECT_GT(volume.codeError.relative, 1e-3);
+            EXPECT_GT(volume.codeError().relative, 1e-3);
             EXPECT_EQ(warnings.size(), keeps ? 0u : 1u);
         }
     }
@@ -743,11 +743,11 @@ TEST(DeltaFile, LargeWholeNumbersAreReadAsTheirSourceIs) {
         EXPECT_EQ(file.add(readKept("a.npy"), {}).codeBook, bits < 64 ? "int64" : "float64");
         file.write("delta.vdb");
         const Volume restored = readVolume("delta.vdb");
-        EXPECT_EQ(restored.codeBook.name(), volume.codeBook.name());
+        EXPECT_EQ(restored.codeBook().name(), volume.codeBook().name());
         std::uint64_t wrong = 0;
-        for (auto code = volume.codes->tree().cbeginValueOn(); code; ++code) {
-            const Code other = restored.codes->tree().getValue(code.getCoord());
-            wrong += restored.codeBook.valueOf(other) == volume.codeBook.valueOf(*code) ? 0 : 1;
+        for (auto code = volume.codes()->tree().cbeginValueOn(); code; ++code) {
+            const Code other = restored.codes()->tree().getValue(code.getCoord());
+            wrong += restored.codeBook().valueOf(other) == volume.codeBook().valueOf(*code) ? 0 : 1;
         }
         EXPECT_EQ(wrong, 0u);
     }
@@ -768,7 +768,7 @@ TEST(DeltaFile, IntegersThatDoublesRoundAreNotCalledExact) {
         EXPECT_GT(entry.maxError, 0);
         EXPECT_FALSE(entry.lossless);
         file.write("delta.vdb");
-        EXPECT_EQ(readVolume("delta.vdb").origin->maxError, entry.maxError);
+        EXPECT_EQ(readVolume("delta.vdb").origin()->maxError, entry.maxError);
         DeltaFileOptions strict;
         strict.maxError = 0;
         EXPECT_THROW(DeltaFile().add(volume, strict), Error);
@@ -806,7 +806,7 @@ TEST(DeltaFile, GridsOfManyValuesComeBackAsTheyAreRead) {
     grid->setName("density");
     openvdb::io::File("source.vdb").write({grid});
     const Volume volume = readKept("source.vdb");
-    ASSERT_TRUE(volume.codeBook.pieces);
+    ASSERT_TRUE(volume.codeBook().pieces);
     DeltaFile file;
     file.add(volume, {});
     file.write("delta.vdb");
@@ -858,18 +858,18 @@ TEST(DeltaFile, WideIntegersStayWholeAndWithinHalfAStep) {
         grid->setName("count");
         openvdb::io::File("source.vdb").write({grid});
         const Volume volume = readKept("source.vdb");
-        ASSERT_FALSE(volume.codeBook.isExact());
+        ASSERT_FALSE(volume.codeBook().isExact());
         double step = 0;
         for (int code = 0; code < kCodeCount; ++code) {
-            const double own = volume.codeBook.valueOf(Code(code));
+            const double own = volume.codeBook().valueOf(Code(code));
             EXPECT_EQ(own, std::floor(own));
-            step = std::max(step, 2 * volume.codeBook.largestErrorOf(Code(code)));
+            step = std::max(step, 2 * volume.codeBook().largestErrorOf(Code(code)));
         }
         for (const bool pack : {false, true}) {
             const std::int64_t largest = largestErrorOfCodes(*grid, volume, pack);
             EXPECT_GT(largest, 0);
             EXPECT_LE(double(largest), step / 2);
-            EXPECT_EQ(double(largest), volume.codeError.absolute);
+            EXPECT_EQ(double(largest), volume.codeError().absolute);
         }
     }
 }
@@ -883,23 +883,24 @@ TEST(DeltaFile, FloatsBesideAnOutlierComeBackAsTheirCodes) {
     values[777] = 1000;
     testing::writeBytes("fog_50x48x40_float32.raw", testing::bytesOf(values));
     const Volume volume = readKept("fog_50x48x40_float32.raw");
-    ASSERT_TRUE(volume.codeBook.pieces);
+    ASSERT_TRUE(volume.codeBook().pieces);
     DeltaFile file;
     DeltaFileOptions options = codesOnly();
     options.pack = true;
     const DeltaFileEntry entry = file.add(volume, options);
     file.write("delta.vdb");
-    EXPECT_EQ(entry.maxError, volume.codeError.absolute);
+    EXPECT_EQ(entry.maxError, volume.codeError().absolute);
     const Volume restored = readVolume("delta.vdb");
-    EXPECT_EQ(*restored.codeBook.table, *volume.codeBook.table);
-    EXPECT_EQ(restored.codeBook.largestErrorOf(9), volume.codeBook.largestErrorOf(9));
+    EXPECT_EQ(*restored.codeBook().table, *volume.codeBook().table);
+    EXPECT_EQ(restored.codeBook().largestErrorOf(9), volume.codeBook().largestErrorOf(9));
     const PlainVolume plain = testing::readPlainDeltas("delta.vdb", "fog_50x48x40_float32");
     for (std::size_t i = 0; i < values.size(); ++i) {
         const Coord at(int(i % 50), int(i / 50 % 48), int(i / 2400));
         const auto own = double(values[i]);
         ASSERT_LE(std::fabs(plain.valueAt(at) - own),
                   std::max(2e-4 * std::fabs(own), 0x1p-16 * 0.006));
-        ASSERT_EQ(plain.valueAt(at), volume.codeBook.valueOf(volume.codes->tree().getValue(at)));
+        ASSERT_EQ(plain.valueAt(at),
+                  volume.codeBook().valueOf(volume.codes()->tree().getValue(at)));
     }
 }
 
@@ -920,15 +921,15 @@ void beginWithTheSmallest(bool pack) {
     EXPECT_TRUE(file.add(volume, options).lossless);
     file.write("delta.vdb");
     const Volume restored = readVolume("delta.vdb");
-    EXPECT_EQ(restored.codeBook.offset, 1200);
-    EXPECT_EQ(restored.valueMin, 1200);
-    EXPECT_EQ(restored.valueMax, 20000);
-    EXPECT_EQ(restored.mostFrequent->value, 1700);
+    EXPECT_EQ(restored.codeBook().offset, 1200);
+    EXPECT_EQ(restored.valueMin(), 1200);
+    EXPECT_EQ(restored.valueMax(), 20000);
+    EXPECT_EQ(restored.mostFrequent()->value, 1700);
     const PlainVolume plain = testing::readPlainDeltas("delta.vdb", "a_60x50x40_int16");
     for (std::size_t i = 0; i < values.size(); ++i) {
         const Coord at(int(i % 60), int(i / 60 % 50), int(i / 3000));
         ASSERT_EQ(plain.valueAt(at), values[i]);
-        ASSERT_EQ(restored.codeBook.valueOf(restored.codes->tree().getValue(at)), values[i]);
+        ASSERT_EQ(restored.codeBook().valueOf(restored.codes()->tree().getValue(at)), values[i]);
     }
 }
 
@@ -949,10 +950,10 @@ TEST(DeltaFile, PackedGridsWithoutVoxelsComeBack) {
     EXPECT_TRUE(file.add(readKept("source.vdb"), options).lossless);
     file.write("delta.vdb");
     const Volume restored = readKept("delta.vdb");
-    EXPECT_EQ(restored.activeCount, 0u);
-    EXPECT_EQ(restored.background, 0.25);
-    ASSERT_TRUE(restored.source->grid.as<openvdb::FloatTree>());
-    EXPECT_EQ(restored.source->grid.tree->leafCount(), 0u);
+    EXPECT_EQ(restored.activeCount(), 0u);
+    EXPECT_EQ(restored.background(), 0.25);
+    ASSERT_TRUE(restored.source()->grid.as<openvdb::FloatTree>());
+    EXPECT_EQ(restored.source()->grid.tree->leafCount(), 0u);
     EXPECT_EQ(testing::readPlainDeltas("delta.vdb", "density").background, 0.25);
 }
 
@@ -971,8 +972,8 @@ TEST(DeltaFile, ErrorsOfADeltaGridAreCarriedOn) {
     EXPECT_EQ(same.maxError, before.maxError);
     EXPECT_FALSE(same.lossless);
     second.write("second.vdb");
-    EXPECT_EQ(readVolume("second.vdb").origin->maxError, before.maxError);
-    EXPECT_EQ(readVolume("second.vdb").origin->toleranceValue, 4);
+    EXPECT_EQ(readVolume("second.vdb").origin()->maxError, before.maxError);
+    EXPECT_EQ(readVolume("second.vdb").origin()->toleranceValue, 4);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "formats/delta/delta_format.h"
 #include "formats/delta/read_delta_grid.h"
 #include "formats/vdb/vdb_file.h"
+#include "support/changed_volume.h"
 #include "support/same_picture.h"
 #include "support/same_volume.h"
 #include "unit/ingest_helpers.h"
@@ -51,14 +52,14 @@ Volume readWhole(const std::string& file) {
     TreeGrid stored = vdb.read(grid, {});
     if (!isDeltaGrid(stored)) return readVolume(file, options);
     worldFromIndexOf(*stored.map, where);
-    Volume volume = readDeltaGrid(stored, vdb.metadata(), where, options, {});
+    VolumeData volume = readDeltaGrid(stored, vdb.metadata(), where, options, {});
     volume.name = grid.name;
     volume.source = nullptr;
-    return volume;
+    return Volume(std::move(volume));
 }
 
 const SlotBlocks* blocksOf(const Volume& volume) {
-    return volume.codes->blocksAlong(volume.origin->sliceAxis);
+    return volume.codes()->blocksAlong(volume.origin()->sliceAxis);
 }
 
 // How deltas lie in a file.
@@ -79,9 +80,9 @@ Volume throughDeltas(const Volume& volume, int sliceAxis, int keyInterval, bool 
 // What is said of the volume and of its deltas, before any tree is made.
 void expectSameOfDeltas(const Volume& a, const Volume& b) {
     expectSameFacts(a, b);
-    ASSERT_TRUE(a.origin && b.origin);
-    EXPECT_EQ(a.origin->deltas, b.origin->deltas);
-    EXPECT_EQ(a.origin->keyInterval, b.origin->keyInterval);
+    ASSERT_TRUE(a.origin() && b.origin());
+    EXPECT_EQ(a.origin()->deltas, b.origin()->deltas);
+    EXPECT_EQ(a.origin()->keyInterval, b.origin()->keyInterval);
 }
 
 std::vector<Slot> someClasses(unsigned step) {
@@ -118,7 +119,7 @@ void expectSameAsWhole(const Volume& quick, bool pack) {
     const Volume whole = readWhole(kDeltas);
     ASSERT_EQ(blocksOf(whole), nullptr);
     expectSameOfDeltas(quick, whole);
-    const int axis = quick.origin->sliceAxis;
+    const int axis = quick.origin()->sliceAxis;
     const auto holds = [](Slot held, Slot slot) { return std::abs(held - slot) < 40; };
     for (const Encoding encoding :
          {Encoding::kChanges, Encoding::kWhole, Encoding::kFewerWordsOrStamps}) {
@@ -194,7 +195,7 @@ void expectSameOfRandom(unsigned seed, const Value& value, const std::string& co
     const Volume source = readVolume("source.vdb", reading);
     for (const bool pack : kPacked) {
         const Volume quick = throughDeltas(source, int(seed % 3), int(8 * (1 + seed % 5)), pack);
-        ASSERT_EQ(quick.origin->codeBook, codeBook);
+        ASSERT_EQ(quick.origin()->codeBook, codeBook);
         expectSameAsWhole(quick, pack);
     }
 }
@@ -323,7 +324,7 @@ void expectSameOfOtherWriters() {
     openvdb::initialize();
     openvdb::io::File input(kDeltas);
     input.open();
-    const auto grid = openvdb::gridPtrCast<Grid>(input.readGrid(whole.name));
+    const auto grid = openvdb::gridPtrCast<Grid>(input.readGrid(whole.name()));
     // Inactive deltas mean nothing.
     int changed = 0;
     for (auto leaf = grid->tree().beginLeaf(); leaf; ++leaf) {
@@ -374,7 +375,7 @@ TEST(DeltaLeaves, StreamsOfManyLeaves) {
     openvdb::initialize();
     openvdb::io::File input(kDeltas);
     input.open();
-    const auto words = openvdb::gridPtrCast<openvdb::Int64Grid>(input.readGrid(quick.name));
+    const auto words = openvdb::gridPtrCast<openvdb::Int64Grid>(input.readGrid(quick.name()));
     EXPECT_GT(words->tree().leafCount(), 150u);
     expectSameAsWhole(quick, true);
 }
@@ -398,14 +399,14 @@ TEST(DeltaLeaves, EmptyVolumes) {
 std::string outcomeOf(const std::function<Volume()>& read) {
     try {
         const Volume volume = read();
-        std::string text = std::to_string(volume.activeCount) + " voxels";
-        for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-            if (volume.histogram[code] != 0)
-                text += " " + std::to_string(code) + ":" + std::to_string(volume.histogram[code]);
+        std::string text = std::to_string(volume.activeCount()) + " voxels";
+        for (std::size_t code = 0; code < volume.histogram().size(); ++code) {
+            if (volume.histogram()[code] != 0)
+                text += " " + std::to_string(code) + ":" + std::to_string(volume.histogram()[code]);
         }
         std::uint64_t sum = 0;
-        const openvdb::tree::ValueAccessor<const CodeTree::Tree> codes(volume.codes->tree());
-        const glm::ivec3 low = volume.box.min, high = volume.box.max;
+        const openvdb::tree::ValueAccessor<const CodeTree::Tree> codes(volume.codes()->tree());
+        const glm::ivec3 low = volume.box().min, high = volume.box().max;
         for (openvdb::CoordBBox::Iterator<true> at(
                  {{low.x, low.y, low.z}, {high.x, high.y, high.z}});
              at; ++at) {

@@ -96,7 +96,7 @@ Volume readRaw(const std::string& type, const std::vector<T>& values,
 }
 
 double keptValue(const Volume& volume, std::size_t i) {
-    return volume.codeBook.valueOf(volume.codes->tree().getValue(coordOf(i)));
+    return volume.codeBook().valueOf(volume.codes()->tree().getValue(coordOf(i)));
 }
 
 // Every value within 2e-4 of itself, or within 2^-16 of the bulk's width.
@@ -109,7 +109,7 @@ void expectKept(const std::string& type) {
         const std::vector<T> values = valuesOf<T>(one);
         std::vector<std::string> warnings;
         const Volume volume = readRaw(type, values, &warnings);
-        ASSERT_FALSE(volume.codeBook.isExact());
+        ASSERT_FALSE(volume.codeBook().isExact());
         double largest = 0;
         double low = double(values[0]);
         double high = low;
@@ -117,17 +117,17 @@ void expectKept(const std::string& type) {
             const auto own = double(values[i]);
             const double off = std::fabs(keptValue(volume, i) - own);
             ASSERT_LE(off, std::max(2e-4 * std::fabs(own), 0x1p-16 * one.bulkWidth)) << own;
-            ASSERT_LE(off,
-                      volume.codeBook.largestErrorOf(volume.codes->tree().getValue(coordOf(i))) *
-                          (1 + 1e-9));
+            ASSERT_LE(
+                off, volume.codeBook().largestErrorOf(volume.codes()->tree().getValue(coordOf(i))) *
+                         (1 + 1e-9));
             largest = std::max(largest, off);
             low = std::min(low, own);
             high = std::max(high, own);
         }
-        EXPECT_EQ(volume.codeError.absolute, largest);
-        EXPECT_LE(volume.codeError.relative, 2e-4);
-        EXPECT_EQ(volume.valueMin, low);
-        EXPECT_EQ(volume.valueMax, high);
+        EXPECT_EQ(volume.codeError().absolute, largest);
+        EXPECT_LE(volume.codeError().relative, 2e-4);
+        EXPECT_EQ(volume.valueMin(), low);
+        EXPECT_EQ(volume.valueMax(), high);
         EXPECT_TRUE(warnings.empty()) << warnings[0];
     }
 }
@@ -168,7 +168,7 @@ TEST(FloatValues, WhatIsKeptBadlyIsSaid) {
     ReadOptions options;
     options.bits = 16;
     const Volume volume = readVolume("v_56x48x40_float32.raw", options, listener);
-    EXPECT_GT(volume.codeError.relative, 0.9);
+    EXPECT_GT(volume.codeError().relative, 0.9);
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_NE(warnings[0].find("v_56x48x40_float32.raw: values are kept as codes that are off by"),
               std::string::npos)
@@ -192,10 +192,10 @@ TEST(FloatValues, FrequentValuesAreExact) {
             count += values[i] == background ? 1 : 0;
         }
         const Volume volume = readRaw("float64", values);
-        ASSERT_FALSE(volume.codeBook.isExact());
-        ASSERT_TRUE(volume.mostFrequent.has_value());
-        EXPECT_EQ(volume.mostFrequent->value, background);
-        EXPECT_EQ(volume.mostFrequent->count, count);
+        ASSERT_FALSE(volume.codeBook().isExact());
+        ASSERT_TRUE(volume.mostFrequent().has_value());
+        EXPECT_EQ(volume.mostFrequent()->value, background);
+        EXPECT_EQ(volume.mostFrequent()->count, count);
         EXPECT_EQ(guessBackground(volume), background);
         for (std::size_t i = 0; i < kVoxels; ++i) {
             if (values[i] == background) {
@@ -225,9 +225,9 @@ TEST(FloatValues, WideIntegersTellTheirOwnRange) {
     values[7] = 3;
     values[8] = 999996;
     const Volume volume = readRaw("int32", values);
-    ASSERT_FALSE(volume.codeBook.isExact());
-    EXPECT_EQ(volume.valueMin, 3);
-    EXPECT_EQ(volume.valueMax, 999996);
+    ASSERT_FALSE(volume.codeBook().isExact());
+    EXPECT_EQ(volume.valueMin(), 3);
+    EXPECT_EQ(volume.valueMax(), 999996);
 }
 
 // One pixel a voxel, pixels on voxels, no footprint: a pixel is a sum, or the largest, of a row.
@@ -289,7 +289,7 @@ void expectRaysSee(const std::string& type) {
         SCOPED_TRACE(one.name);
         const std::vector<T> values = valuesOf<T>(one);
         const Volume volume = readRaw(type, values);
-        ASSERT_TRUE(volume.source);
+        ASSERT_TRUE(volume.source());
         expectSeen(volume, values, [](std::size_t) { return true; });
     }
 }
@@ -334,7 +334,7 @@ TEST(FloatValues, RaysSeeActiveVoxelsOfAGrid) {
     ReadOptions options;
     options.keepInexact = true;
     const Volume volume = readVolume("a.vdb", options);
-    ASSERT_FALSE(volume.codeBook.isExact());
+    ASSERT_FALSE(volume.codeBook().isExact());
     expectSeen(volume, expected, [&](std::size_t i) { return grid->tree().isValueOn(coordOf(i)); });
 }
 

@@ -18,7 +18,7 @@ namespace {
 Volume evenSlope() {
     Volume volume = test::makeVolume(
         {{0, 0, 0}, {20, 24, 28}}, [](int x, int y, int z) { return 200 + 5 * x - 3 * y + 2 * z; });
-    volume.worldFromIndex =
+    test::changed(volume)->worldFromIndex =
         glm::rotate(glm::dmat4(1), 0.7, glm::dvec3(1, 2, 3)) *
         glm::dmat4(glm::dmat3(glm::dvec3(0.5, 0, 0), glm::dvec3(0, 2, 0), glm::dvec3(0, 0, 1)));
     return volume;

@@ -264,7 +264,7 @@ double sumOf(const Image& image) {
 }
 
 Scene mirroredScene(Scene scene) {
-    for (int i = 0; i < 4; ++i) scene.volume.worldFromIndex[i].x *= -1;
+    for (int i = 0; i < 4; ++i) test::changed(scene.volume)->worldFromIndex[i].x *= -1;
     scene.options.camera.direction->x *= -1;
     scene.options.camera.targetWorld->x *= -1;
     scene.ground.pointWorld.x *= -1;

@@ -381,7 +381,7 @@ TEST(Identity, VolumesFarFromTheIndexOriginLookTheSame) {
 // Cost goes by voxels: a face of 2^60 of them that has one, seen squarely, is as cheap as that one.
 TEST(Identity, SheetsGoByWhatIsThere) {
     Volume volume = test::makeVolume({{0, 0, 0}, {0, 0, 0}}, [](int, int, int) { return 200; });
-    volume.box = {{-(1 << 29), -(1 << 29), 0}, {1 << 29, 1 << 29, 0}};
+    test::changed(volume)->box = {{-(1 << 29), -(1 << 29), 0}, {1 << 29, 1 << 29, 0}};
     for (const int resolution : {1, 8, 16}) {
         RenderOptions options = optionsFor(kDirections[0]);
         options.splat.resolution = resolution;

@@ -342,18 +342,18 @@ TEST_F(Joined, joinsAnyNumberOfClasses) {
 
 TEST_F(Joined, notWhereLittleIsSaved) {
     const Volume volume = test::randomVolume(kBox, 5, 0.5);
-    leastVoxelsJoined = volume.activeCount + 1;
+    leastVoxelsJoined = volume.activeCount() + 1;
     const RenderOptions options = optionsFor(Colors::kSeveral, 0.3, kOblique);
     EXPECT_EQ(render(volume, options).stats.joined, 1);
-    leastVoxelsJoined = volume.activeCount;
+    leastVoxelsJoined = volume.activeCount();
     EXPECT_EQ(render(volume, options).stats.joined, 2);
     // Nor more than two of several colours, but in a large volume.
     for (const Colors colors : {Colors::kOne, Colors::kSeveral}) {
         RenderOptions many = optionsFor(colors, 0.3, {0, 0, 1});
         many.splat.mostJoined = 8;
-        leastVoxelsJoined = volume.activeCount / 32 + 1;
+        leastVoxelsJoined = volume.activeCount() / 32 + 1;
         EXPECT_EQ(render(volume, many).stats.joined, colors == Colors::kOne ? 8 : 2);
-        leastVoxelsJoined = volume.activeCount / 32;
+        leastVoxelsJoined = volume.activeCount() / 32;
         EXPECT_EQ(render(volume, many).stats.joined, 8);
     }
 }
@@ -363,7 +363,7 @@ TEST_F(Joined, oneColorIsWhatAllPointsHave) {
     const Volume volume = test::randomVolume(kBox, 5, 0.5);
     RenderOptions options = optionsFor(Colors::kOne, 0.3, {0, 0, 1});
     options.splat.mostJoined = 8;
-    leastVoxelsJoined = volume.activeCount;
+    leastVoxelsJoined = volume.activeCount();
     const RenderResult expected = render(volume, options);
     EXPECT_EQ(expected.stats.joined, 8);
     TransferFunction& function = options.optics.transferFunction;

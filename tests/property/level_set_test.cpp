@@ -133,16 +133,16 @@ TEST(LevelSetBand, IsContinuedAsItsValuesGoOn) {
         std::vector<std::string> warnings;
         const Volume volume = read(thin, LevelSetSurface{}, &warnings);
         ASSERT_EQ(warnings.size(), 1u);
-        const std::uint64_t added = volume.activeCount - thin->activeVoxelCount();
+        const std::uint64_t added = volume.activeCount() - thin->activeVoxelCount();
         EXPECT_EQ(warnings[0], "OpenVDB grid: the level set's band ends too near to the surface; " +
                                    std::to_string(added) +
                                    " voxels beside it go on as their values do");
         EXPECT_GT(added, 900u);
         EXPECT_LT(added, 1800u);
         double worst = 0;
-        for (auto value = volume.codes->tree().cbeginValueOn(); value; ++value) {
+        for (auto value = volume.codes()->tree().cbeginValueOn(); value; ++value) {
             const double distance = (value.getCoord().asVec3d() - kMiddle).length() - 10;
-            const double got = volume.codeBook.valueOf(*value) / voxel;
+            const double got = volume.codeBook().valueOf(*value) / voxel;
             worst = std::max(worst, std::abs(got - distance));
             EXPECT_GT(distance * got, -1e-6);
             EXPECT_GT(distance, -2.3);
@@ -158,13 +158,13 @@ TEST(LevelSetBand, ThatIsWideIsLeftAlone) {
         std::vector<std::string> warnings;
         const Volume volume = read(even, LevelSetSurface{}, &warnings);
         EXPECT_TRUE(warnings.empty());
-        EXPECT_EQ(volume.histogram, read(even, {}).histogram);
+        EXPECT_EQ(volume.histogram(), read(even, {}).histogram());
     }
     const auto thin = ball<openvdb::FloatGrid>(10, 0.6, 3, Inside::kMinusBackground);
     const std::uint64_t count = thin->activeVoxelCount();
-    EXPECT_GT(read(thin, LevelSetSurface{}).activeCount, count);
+    EXPECT_GT(read(thin, LevelSetSurface{}).activeCount(), count);
     EXPECT_EQ(thin->activeVoxelCount(), count);
-    EXPECT_EQ(read(thin, {}).activeCount, count);
+    EXPECT_EQ(read(thin, {}).activeCount(), count);
 }
 
 // A volume's own end is no surface.
@@ -177,7 +177,7 @@ TEST(LevelSetBand, EndsWhereAVolumeDoes) {
             for (int z = 0; z < 16; ++z)
                 if (std::abs(y - 7.5F) < 3)
                     grid->tree().setValueOn(openvdb::Coord(x, y, z), float(y) - 7.5F);
-    EXPECT_EQ(read(grid, LevelSetSurface{}).histogram, read(grid, {}).histogram);
+    EXPECT_EQ(read(grid, LevelSetSurface{}).histogram(), read(grid, {}).histogram());
 }
 
 // What is going to be cut is solid to its middle.
@@ -186,8 +186,8 @@ TEST(LevelSetBand, IsFilledWhereItIsCut) {
         const auto thin = ball<openvdb::FloatGrid>(12, 0.6, 3, inside);
         const Volume volume = read(thin, LevelSetSurface{0, true});
         std::uint64_t within = 0;
-        for (auto value = volume.codes->tree().cbeginValueOn(); value; ++value)
-            within += volume.codeBook.valueOf(*value) < 0 ? value.getVoxelCount() : 0;
+        for (auto value = volume.codes()->tree().cbeginValueOn(); value; ++value)
+            within += volume.codeBook().valueOf(*value) < 0 ? value.getVoxelCount() : 0;
         EXPECT_NEAR(double(within), 4.0 / 3 * 3.14159265 * 12 * 12 * 12, 100);
         Cut cut;
         cut.clipPlanes = {{{0, 0.5, 0}, {0, -1, 0}}};

@@ -15,6 +15,7 @@
 #include "deltasplat/ingest/make_volume.h"
 #include "deltasplat/prepared_scene.h"
 #include "deltasplat/render.h"
+#include "support/changed_volume.h"
 #include "support/error_of.h"
 #include "support/same_picture.h"
 #include "support/sight_line.h"
@@ -44,7 +45,7 @@ Volume gridOf(const glm::ivec3& dims, const glm::dmat4& worldFromIndex, const Fi
     layout.worldFromIndex = worldFromIndex;
     layout.background = std::numeric_limits<double>::quiet_NaN();
     Volume volume = makeVolume<float>(values, layout);
-    volume.background = 0;
+    test::changed(volume)->background = 0;
     return volume;
 }
 
@@ -359,7 +360,7 @@ TEST(Medium, warmAirDoesNotGlow) {
     part.volume = heat;
     optics.parts = {part};
     const PreparedScene scene({shared(smoke), optics}, {});
-    EXPECT_LT(scene.scene().volume->box.dims().x, 18);
+    EXPECT_LT(scene.scene().volume->box().dims().x, 18);
     const RenderResult result = renderFrom(smoke, optics, straight());
     // sigma T^4 / pi in megawatts, over nine voxels.
     const double radiance = 5.670374e-14 / M_PI * std::pow(1800.0, 4);

@@ -481,11 +481,11 @@ TEST(Perspective, picturesDoNotDependOnThePlaceInIndexSpace) {
     const Volume here = randomVolume(box, 3, 0.4);
     const glm::ivec3 moved(8 * 100000, -8 * 70000, 8 * 3);
     Volume there = makeVolume({box.min + moved, box.max + moved}, [&](int x, int y, int z) {
-        const auto& tree = here.codes->tree();
+        const auto& tree = here.codes()->tree();
         const openvdb::Coord at(x - moved.x, y - moved.y, z - moved.z);
         return tree.isValueOn(at) ? int(tree.getValue(at)) : kInactive;
     });
-    there.worldFromIndex[3] = glm::dvec4(-glm::dvec3(moved), 1);
+    test::changed(there)->worldFromIndex[3] = glm::dvec4(-glm::dvec3(moved), 1);
     RenderOptions options = optionsOf(0.5, Projection::kPerspective, {80, 80});
     options.camera.eyeWorld = glm::dvec3(11, 12, 60);
     options.camera.targetWorld = glm::dvec3(10, 12, 11);

@@ -20,10 +20,10 @@ constexpr IndexBox kBox{{-4, 2, 3}, {19, 17, 30}};
 Volume oneVoxel(const glm::ivec3& at) {
     Volume volume =
         makeVolume(kBox, [&](int x, int y, int z) { return glm::ivec3(x, y, z) == at ? 100 : 0; });
-    volume.worldFromIndex[0] = {0.5, 0.1, 0, 0};
-    volume.worldFromIndex[1] = {0, -0.75, 0.2, 0};
-    volume.worldFromIndex[2] = {0.3, 0, 1.25, 0};
-    volume.worldFromIndex[3] = {10, -20, 30, 1};
+    test::changed(volume)->worldFromIndex[0] = {0.5, 0.1, 0, 0};
+    test::changed(volume)->worldFromIndex[1] = {0, -0.75, 0.2, 0};
+    test::changed(volume)->worldFromIndex[2] = {0.3, 0, 1.25, 0};
+    test::changed(volume)->worldFromIndex[3] = {10, -20, 30, 1};
     return volume;
 }
 
@@ -83,7 +83,7 @@ TEST(PicturePlace, CornersAreWhereTheMetadataProjectThem) {
         const std::string name = (folder / "out.exr").string();
         writeImage(name, result.image, file);
 
-        const glm::dvec3 world(volume.worldFromIndex * glm::dvec4(at, 1));
+        const glm::dvec3 world(volume.worldFromIndex() * glm::dvec4(at, 1));
         const glm::dvec3 ndc = transformed(world, storedMatrix(name, "worldToNDC"));
         const glm::dvec2 pixel = glm::dvec2(ndc) * glm::dvec2(240, 160);
         // Half a pixel would be another corner or centre; one narrow voxel alone is resampled with
@@ -109,7 +109,7 @@ TEST(PicturePlace, PatientsStandUpright) {
             Volume volume = makeVolume({glm::ivec3(0), glm::ivec3(16)}, [&](int x, int y, int z) {
                 return glm::ivec3(x, y, z) == at ? 100 : 0;
             });
-            volume.space = patient.space;
+            test::changed(volume)->space = patient.space;
             RenderOptions options;
             options.mode = Mode::kXray;
             options.camera.view = view;

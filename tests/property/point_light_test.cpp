@@ -332,7 +332,8 @@ TEST(PointLight, mirrorsWithTheScene) {
     options.camera.frameWidthWorld = 50;
     const Image image = render(volume, options).image;
     EXPECT_GT(meanOf(image), 0.01);
-    for (int i = 0; i < 4; ++i) volume.worldFromIndex[i].x = -volume.worldFromIndex[i].x;
+    for (int i = 0; i < 4; ++i)
+        test::changed(volume)->worldFromIndex[i].x = -volume.worldFromIndex()[i].x;
     options.camera.direction->x = -options.camera.direction->x;
     options.camera.targetWorld->x = -options.camera.targetWorld->x;
     for (Light& light : options.optics.scattering->lights) {
@@ -362,12 +363,12 @@ TEST(PointLight, doesNotDependOnHowFogIsStored) {
             return 20 + 10 * (p.x + p.y * p.z);
         });
         if (asTiles) {
-            auto tree = std::make_shared<CodeTree>(*volume.codes);
+            auto tree = std::make_shared<CodeTree>(*volume.codes());
             tree->tree().prune();
             EXPECT_GT(tree->tree().activeTileCount(), 0u);
-            volume.codes = tree;
+            test::changed(volume)->codes = tree;
         }
-        volume.worldFromIndex[3] = glm::dvec4(-glm::dvec3(first), 1);
+        test::changed(volume)->worldFromIndex[3] = glm::dvec4(-glm::dvec3(first), 1);
         RenderOptions options = someOptions();
         options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {255, 0.2, 0.5, 0}};
         options.optics.scattering->lights = {pointAt(light, 100, 2)};

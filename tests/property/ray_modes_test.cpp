@@ -13,6 +13,7 @@
 #include "deltasplat/threads.h"
 #include "property/ray_scene.h"
 #include "property/value_volume.h"
+#include "support/changed_volume.h"
 #include "support/simd_levels.h"
 
 namespace deltasplat::test {
@@ -53,9 +54,9 @@ class PlainEye {
   public:
     PlainEye(const Volume& volume, const Camera& camera)
         : camera_(camera), plain_(plainVolume(volume)) {
-        toIndex_ = glm::inverse(glm::dmat3(volume.worldFromIndex));
+        toIndex_ = glm::inverse(glm::dmat3(volume.worldFromIndex()));
         eye_ = toIndex_ * (camera.targetWorld - camera.targetDistanceWorld * camera.direction -
-                           glm::dvec3(volume.worldFromIndex[3]));
+                           glm::dvec3(volume.worldFromIndex()[3]));
     }
 
     reference::Seen see(int x, int y) const {
@@ -111,13 +112,13 @@ TEST(RayModes, PicturesFromAnEyeAgreeWithAPlainLoop) {
     for (const double emptyShare : {0.0, 0.85}) {
         for (const bool isCrooked : {false, true}) {
             Volume volume = randomVolume({{-5, 3, -9}, {12, 20, 6}}, 5, emptyShare, {1, 1.25, 0.9});
-            volume.codeBook = CodeBook::integer(-100);
-            if (isCrooked) volume.worldFromIndex = crooked();
+            test::changed(volume)->codeBook = CodeBook::integer(-100);
+            if (isCrooked) test::changed(volume)->worldFromIndex = crooked();
             int met = 0;
             int cameraNumber = 0;
             for (const CameraOptions& options : eyeCameras(volume)) {
                 SCOPED_TRACE(cameraNumber++);
-                const Camera camera = makeCamera(options, volume.box, volume.worldFromIndex);
+                const Camera camera = makeCamera(options, volume.box(), volume.worldFromIndex());
                 const PlainEye plain(volume, camera);
                 Image images[4];
                 const Mode modes[] = {Mode::kXray, Mode::kMip, Mode::kMin, Mode::kAverage};
@@ -162,7 +163,7 @@ TEST(RayModes, SumsOfLargePixelsKeepWhatVoxelsHold) {
         return (x * 31 + y * 17 + z * 7 + 10000) % 97 == 0 ? 200 : kInactive;
     });
     for (const Volume* volume : {&one, &few}) {
-        const double held = volume == &one ? 1000 : 200.0 * double(few.activeCount);
+        const double held = volume == &one ? 1000 : 200.0 * double(few.activeCount());
         // Lines are a voxel apart: of one alone they hit more or less of its middle.
         const double bound = volume == &one ? 0.08 : 0.02;
         for (const int voxels : {5, 40, 64, 625, 9000}) {
@@ -188,7 +189,8 @@ TEST(RayModes, SumsOfLargePixelsAreMeansOfSmallOnes) {
         return (x / 3 * 7 + y / 3 * 5 + z * 3) % 11 < 4 ? 200 : 0;
     });
     for (const glm::dvec3& spacing : {glm::dvec3(0.5, 0.5, 5), glm::dvec3(1, 20, 1)}) {
-        for (int axis = 0; axis < 3; ++axis) volume.worldFromIndex[axis][axis] = spacing[axis];
+        for (int axis = 0; axis < 3; ++axis)
+            test::changed(volume)->worldFromIndex[axis][axis] = spacing[axis];
         for (const char* view : {"front", "left", "top", "iso"}) {
             RenderOptions options;
             options.mode = Mode::kXray;
@@ -219,9 +221,9 @@ TEST(RayModes, RadiographOfASlabIsTheExponential) {
         Volume volume = makeVolume(
             {{0, 0, 0}, {159, 159, thickness - 1}},
             [](int, int, int z) { return z % 4 == 1 ? 0 : 2500; }, spacing);
-        volume.codeBook = CodeBook::integer(-2000);
-        volume.valueMin = -2000;
-        volume.valueMax = 500;
+        test::changed(volume)->codeBook = CodeBook::integer(-2000);
+        test::changed(volume)->valueMin = -2000;
+        test::changed(volume)->valueMax = 500;
         const double mu = 0.004 / spacing.z;
         for (const double slope : {0.0, 0.3}) {
             const glm::dvec3 direction(slope * spacing.x, -0.2 * spacing.y, -spacing.z);
@@ -298,7 +300,7 @@ TEST(RayModes, MeanAndSmallestOfAConstantAreIt) {
     Volume volume = makeVolume({{0, 0, 0}, {19, 19, 19}}, [](int x, int y, int z) {
         return (x + 2 * y + 3 * z) % 5 == 0 ? kInactive : 7;
     });
-    volume.codeBook = CodeBook::ofTable({0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7});
+    test::changed(volume)->codeBook = CodeBook::ofTable({0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7});
     for (const Mode mode : {Mode::kAverage, Mode::kMin}) {
         for (const glm::dvec3& direction : kDirections) {
             for (const bool parallel : {true, false}) {
@@ -355,9 +357,9 @@ TEST(RayModes, LargestValuesStayBetweenThoseOfTheVolume) {
     for (const int offset : {-1000, 0}) {
         Volume volume = makeVolume({{0, 0, 0}, {31, 31, 31}},
                                    [](int x, int, int) { return x < 16 ? 30 : 100; });
-        volume.codeBook = CodeBook::integer(offset);
-        volume.valueMin = offset + 30;
-        volume.valueMax = offset + 100;
+        test::changed(volume)->codeBook = CodeBook::integer(offset);
+        test::changed(volume)->valueMin = offset + 30;
+        test::changed(volume)->valueMax = offset + 100;
         for (const glm::dvec3& direction : kDirections) {
             for (const bool parallel : {true, false}) {
                 const Image image =
@@ -405,7 +407,7 @@ TEST(RayModes, DepthShadeOfOneVoxel) {
         [&](int x, int y, int z) { return glm::ivec3(x, y, z) == at ? 100 : 0; }, {1, 2, 0.7});
     for (const glm::dvec3& direction : kDirections) {
         TestView view = viewOf(volume, direction);
-        view.target = glm::dvec3(volume.worldFromIndex * glm::dvec4(at, 1));
+        view.target = glm::dvec3(volume.worldFromIndex() * glm::dvec4(at, 1));
         view.size = {9, 9};
         view.pixelWorld = 0.05;
         RenderOptions options = optionsOf(Mode::kMip, view);
@@ -414,7 +416,7 @@ TEST(RayModes, DepthShadeOfOneVoxel) {
         double nearest = 0, farthest = 0;
         const double depth = glm::dot(view.target, unit);
         for (int axis = 0; axis < 3; ++axis) {
-            const double way = 11 * volume.worldFromIndex[axis][axis] * unit[axis];
+            const double way = 11 * volume.worldFromIndex()[axis][axis] * unit[axis];
             nearest += std::min(way, 0.0);
             farthest += std::max(way, 0.0);
         }
@@ -527,12 +529,12 @@ TEST(RayModes, RadiographsOfOtherUnitsAreWarnedOf) {
     Volume volume =
         makeVolume({{0, 0, 0}, {15, 15, 15}}, [](int x, int, int) { return x < 8 ? 0 : 1030; });
     EXPECT_NE(warningsOf(volume).find("names no patient's space"), std::string::npos);
-    volume.space = "RAS";
+    test::changed(volume)->space = "RAS";
     EXPECT_NE(warningsOf(volume).find("hardly any air"), std::string::npos);
     EXPECT_EQ(warningsOf(volume, Mode::kXray), "");
-    volume.codeBook = CodeBook::integer(-1000);
-    volume.valueMin = -1000;
-    volume.valueMax = 30;
+    test::changed(volume)->codeBook = CodeBook::integer(-1000);
+    test::changed(volume)->valueMin = -1000;
+    test::changed(volume)->valueMax = 30;
     EXPECT_EQ(warningsOf(volume), "");
     // Sums of Hounsfield units are of no use, the other way round.
     const std::string xray = warningsOf(volume, Mode::kXray);

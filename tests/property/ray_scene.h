@@ -20,8 +20,8 @@ inline TestView viewOf(const Volume& volume, const glm::dvec3& direction) {
     view.direction = direction;
     view.up = {0.1, 1, 0.2};
     if (glm::length(glm::cross(direction, view.up)) < 0.3) view.up = {0, 0, 1};
-    const glm::dvec3 middle = 0.5 * glm::dvec3(volume.box.min + volume.box.max);
-    view.target = glm::dvec3(volume.worldFromIndex * glm::dvec4(middle, 1));
+    const glm::dvec3 middle = 0.5 * glm::dvec3(volume.box().min + volume.box().max);
+    view.target = glm::dvec3(volume.worldFromIndex() * glm::dvec4(middle, 1));
     view.size = {70, 60};
     view.pixelWorld =
         0.55 * std::min({volume.voxelSize().x, volume.voxelSize().y, volume.voxelSize().z});

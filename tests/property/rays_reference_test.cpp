@@ -7,6 +7,7 @@
 
 #include "property/ray_scene.h"
 #include "property/value_volume.h"
+#include "support/changed_volume.h"
 
 namespace deltasplat::test {
 namespace {
@@ -28,7 +29,7 @@ TEST(RaysReference, LineIntegralsAreThoseOfTrilinearInterpolation) {
     for (const CodeBook& book : codeBooks()) {
         SCOPED_TRACE(book.name());
         Volume volume = randomVolume({{-5, 3, -9}, {12, 20, 6}}, 3, 0.4, {1, 1.25, 0.9});
-        volume.codeBook = book;
+        test::changed(volume)->codeBook = book;
         const reference::ValueVolume plain = plainVolume(volume);
         for (const glm::dvec3& direction : kDirections) {
             const TestView view = viewOf(volume, direction);
@@ -133,10 +134,10 @@ void expectValues(Mode mode, double reference::Seen::*value, double sign) {
         // voxel begins to count.
         const double emptyShare = mode == Mode::kMin ? 0 : 0.96;
         Volume volume = randomVolume({{-5, 3, -9}, {12, 20, 6}}, 4, emptyShare, {1, 1.25, 0.9});
-        volume.codeBook = book;
+        test::changed(volume)->codeBook = book;
         const reference::ValueVolume plain = plainVolume(volume);
-        const double low = book.valueOf(Code(volume.valueMin));
-        const double high = book.valueOf(Code(volume.valueMax));
+        const double low = book.valueOf(Code(volume.valueMin()));
+        const double high = book.valueOf(Code(volume.valueMax()));
         int met = 0;
         int apart = 0;
         for (const glm::dvec3& direction : kDirections) {

@@ -10,6 +10,7 @@
 #include "deltasplat/threads.h"
 #include "optics/value_colors.h"
 #include "property/ray_scene.h"
+#include "support/changed_volume.h"
 #include "support/simd_levels.h"
 
 namespace deltasplat::test {
@@ -19,8 +20,8 @@ constexpr Mode kModes[] = {Mode::kXray, Mode::kMip};
 
 TEST(Rays, HalfFloatsAreValues) {
     Volume volume = makeVolume({{0, 0, 0}, {15, 15, 15}}, [](int, int, int) { return 0xBE00; });
-    volume.codeBook = CodeBook::half();
-    const double value = volume.codeBook.valueOf(0xBE00);
+    test::changed(volume)->codeBook = CodeBook::half();
+    const double value = volume.codeBook().valueOf(0xBE00);
     ASSERT_NE(value, 0xBE00);
     ASSERT_NE(value, 0);
     const TestView view = viewOf(volume, {0, 0, -1});
@@ -34,8 +35,8 @@ TEST(Rays, HalfFloatsAreValues) {
 TEST(Rays, ValuesBeyondFloatsAreWarnedOf) {
     const auto warningsOf = [](Mode mode, double value) {
         Volume volume = makeVolume({{0, 0, 0}, {15, 15, 15}}, [](int, int, int) { return 0; });
-        volume.codeBook = CodeBook::ofTable({value});
-        volume.valueMin = volume.valueMax = value;
+        test::changed(volume)->codeBook = CodeBook::ofTable({value});
+        test::changed(volume)->valueMin = test::changed(volume)->valueMax = value;
         std::string lines;
         Listener listener;
         listener.warning = [&](const std::string& line) { lines += line + "\n"; };
@@ -116,7 +117,7 @@ TEST(Rays, LargestValueOfOneVoxelIsItsOwn) {
         Volume volume = makeVolume({{0, 0, 0}, {9, 9, 9}}, [](int x, int y, int z) {
             return x == 4 && y == 5 && z == 3 ? 200 : kInactive;
         });
-        volume.codeBook = CodeBook::integer(offset);
+        test::changed(volume)->codeBook = CodeBook::integer(offset);
         TestView view = viewOf(volume, {0, 0, -1});
         view.up = {0, 1, 0};
         view.target = {4, 5, 3};
@@ -136,10 +137,10 @@ TEST(Rays, LargestValueOfOneVoxelIsItsOwn) {
 TEST(Rays, ThreadsAndSimdLevelsGiveTheSamePixels) {
     // Higher than a band on every axis, with tiles inside.
     Volume volume = randomVolume({{-19, 5, -60}, {60, 110, 32}}, 17, 0.5, {1, 1.5, 0.8});
-    auto tree = std::make_shared<CodeTree>(*volume.codes);
+    auto tree = std::make_shared<CodeTree>(*volume.codes());
     tree->tree().addTile(1, openvdb::Coord(8, 24, -16), 77, true);
-    volume.codes = tree;
-    ++volume.histogram[77];
+    test::changed(volume)->codes = tree;
+    ++test::changed(volume)->histogram[77];
     for (const Mode mode : kModes) {
         for (const glm::dvec3& direction : kDirections) {
             const RenderOptions options = optionsOf(mode, viewOf(volume, direction));
@@ -223,8 +224,8 @@ TEST(Rays, ColoursOfLargestValuesAreTheTransferFunctions) {
 // 0.7 is no float: the picture's is a little smaller than the volume's own.
 TEST(Rays, ConstantThatIsNoFloatHasItsColour) {
     Volume volume = test::makeVolume({{0, 0, 0}, {7, 7, 7}}, [](int, int, int) { return 0; });
-    volume.codeBook = CodeBook::ofTable({0.7});
-    volume.valueMin = volume.valueMax = 0.7;
+    test::changed(volume)->codeBook = CodeBook::ofTable({0.7});
+    test::changed(volume)->valueMin = test::changed(volume)->valueMax = 0.7;
     Optics optics;
     optics.transferFunction.linearColors = true;
     optics.transferFunction.colors = {{0.7, {0, 0, 0}}, {0.7, {0.25, 0.5, 1}}};

@@ -205,7 +205,7 @@ TEST(Scattering, swallowsEachTime) {
                                 [&](const auto& p) { return ball.extinctionAt(p); });
     const auto same = std::make_shared<const Volume>(
         fogOf(glm::ivec3(32), test::aroundMiddle(32, 1), [](const auto&) { return std::log(2); }));
-    ASSERT_NEAR(same->valueMax, 0.5, 1e-6);
+    ASSERT_NEAR(same->valueMax(), 0.5, 1e-6);
     Scattering fog = someFog();
     fog.ambient = glm::dvec3(0);
     fog.albedo = glm::dvec3(0.5);
@@ -402,7 +402,8 @@ TEST(Scattering, mirrorsWithTheScene) {
     options.camera.targetWorld = glm::dvec3(1, 2, 0);
     options.camera.frameWidthWorld = 50;
     Volume other = volume;
-    for (int i = 0; i < 4; ++i) other.worldFromIndex[i].x = -other.worldFromIndex[i].x;
+    for (int i = 0; i < 4; ++i)
+        test::changed(other)->worldFromIndex[i].x = -other.worldFromIndex()[i].x;
     RenderOptions fromThere = options;
     fromThere.camera.direction->x = -fromThere.camera.direction->x;
     fromThere.camera.targetWorld->x = -fromThere.camera.targetWorld->x;
@@ -467,12 +468,12 @@ TEST(Scattering, doesNotDependOnHowItIsStored) {
             return 20 + 10 * (p.x + p.y * p.z);
         });
         if (asTiles) {
-            auto tree = std::make_shared<CodeTree>(*volume.codes);
+            auto tree = std::make_shared<CodeTree>(*volume.codes());
             tree->tree().prune();
             EXPECT_GT(tree->tree().activeTileCount(), 0u);
-            volume.codes = tree;
+            test::changed(volume)->codes = tree;
         }
-        volume.worldFromIndex[3] = glm::dvec4(-glm::dvec3(first), 1);
+        test::changed(volume)->worldFromIndex[3] = glm::dvec4(-glm::dvec3(first), 1);
         RenderOptions options = someOptions();
         options.optics.transferFunction.opacities = {{0, 0, 0.5, 0}, {255, 0.2, 0.5, 0}};
         options.optics.scattering->lights = {sunOf(light)};

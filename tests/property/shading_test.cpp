@@ -295,12 +295,12 @@ TEST(Shading, mirrorsWithTheScene) {
         options.camera.targetWorld = glm::dvec3(15, 14, 11);
         options.splat.between = between;
         const Image image = render(volume, options).image;
-        volume.worldFromIndex[0] = -volume.worldFromIndex[0];
+        test::changed(volume)->worldFromIndex[0] = -volume.worldFromIndex()[0];
         options.camera.direction->x = -options.camera.direction->x;
         options.camera.targetWorld->x = -options.camera.targetWorld->x;
         for (Light& light : options.optics.shading->lights) light.direction.x = -light.direction.x;
         const Image other = render(volume, options).image;
-        volume.worldFromIndex[0] = -volume.worldFromIndex[0];
+        test::changed(volume)->worldFromIndex[0] = -volume.worldFromIndex()[0];
         EXPECT_EQ(mirrored(other).rgba, image.rgba);
     }
 }
@@ -320,7 +320,7 @@ TEST(Shading, turnsWithTheScene) {
     const Image image = render(volume, options).image;
     const glm::dmat4 turn = glm::rotate(glm::dmat4(1), 1.234, glm::dvec3(0.3, 0.5, -0.7));
     const auto turned = [&](const glm::dvec3& v) { return glm::dvec3(turn * glm::dvec4(v, 0)); };
-    volume.worldFromIndex = turn * volume.worldFromIndex;
+    test::changed(volume)->worldFromIndex = turn * volume.worldFromIndex();
     options.camera.direction = turned(*options.camera.direction);
     options.camera.up = turned(*options.camera.up);
     options.camera.targetWorld = turned(*options.camera.targetWorld);
@@ -358,9 +358,9 @@ TEST(Shading, isFiniteWhateverTheValues) {
         if (large > 0) {
             read = test::makeVolume({{0, 0, 0}, {8, 8, 8}},
                                     [&](int, int, int) { return int(random() % 2); });
-            read.codeBook = CodeBook::ofTable({0, large});
-            read.valueMin = 0;
-            read.valueMax = large;
+            test::changed(read)->codeBook = CodeBook::ofTable({0, large});
+            test::changed(read)->valueMin = 0;
+            test::changed(read)->valueMax = large;
         }
         RenderOptions options = opaqueAbove(0.5 * std::max(large, 1.0));
         options.camera.frameWidthWorld.reset();

@@ -33,7 +33,7 @@ Volume ball(double radius, const glm::dvec3& spacing = glm::dvec3(1), bool isSpa
             return isSparse && value == 0 ? test::kInactive : value;
         },
         spacing);
-    volume.hasBackground = isSparse;
+    test::changed(volume)->hasBackground = isSparse;
     return volume;
 }
 
@@ -131,12 +131,12 @@ TEST(Surface, ofALevelSetIsThatOfItsDistances) {
         });
     std::vector<double> values;
     for (int code = 0; code <= 6 * kSteps; ++code) values.push_back(double(code) / kSteps - 3);
-    volume.codeBook = CodeBook::ofTable(std::move(values));
-    volume.valueMin = -3;
-    volume.valueMax = 3;
-    volume.gridClass = "level set";
-    volume.hasBackground = true;
-    volume.background = 3;
+    test::changed(volume)->codeBook = CodeBook::ofTable(std::move(values));
+    test::changed(volume)->valueMin = -3;
+    test::changed(volume)->valueMax = 3;
+    test::changed(volume)->gridClass = "level set";
+    test::changed(volume)->hasBackground = true;
+    test::changed(volume)->background = 3;
     EXPECT_TRUE(isLevelSet(volume));
     RenderOptions options = surfaceAt(0);
     options.camera.direction = glm::dvec3(-1, -0.7, -0.4);
@@ -191,10 +191,10 @@ TEST(Surface, isCutAsItsVoxelsAre) {
 // Where all that is not active would be inside, what is active is all that is shown.
 TEST(Surface, endsWhereABackgroundInsideBegins) {
     Volume volume = ball(12, glm::dvec3(1), true);
-    volume.background = 3000;
+    test::changed(volume)->background = 3000;
     RenderOptions options = surfaceAt(kSurface);
     options.splat.between = 0;
-    EXPECT_LE(render(volume, options).stats.visible, volume.activeCount);
+    EXPECT_LE(render(volume, options).stats.visible, volume.activeCount());
 }
 
 // What reaches the end of the volume is closed there.
@@ -220,11 +220,11 @@ TEST(Surface, mirrorsWithTheScene) {
         options.camera.targetWorld = glm::dvec3(15, 14, 11);
         options.splat.between = between;
         const Image image = render(volume, options).image;
-        volume.worldFromIndex[0] = -volume.worldFromIndex[0];
+        test::changed(volume)->worldFromIndex[0] = -volume.worldFromIndex()[0];
         options.camera.direction->x = -options.camera.direction->x;
         options.camera.targetWorld->x = -options.camera.targetWorld->x;
         const Image other = render(volume, options).image;
-        volume.worldFromIndex[0] = -volume.worldFromIndex[0];
+        test::changed(volume)->worldFromIndex[0] = -volume.worldFromIndex()[0];
         EXPECT_EQ(mirrored(other).rgba, image.rgba);
     }
 }
@@ -295,9 +295,9 @@ TEST(Surface, isFiniteWhateverTheValues) {
         std::mt19937 random(3);
         Volume volume = test::makeVolume({{0, 0, 0}, {8, 8, 8}},
                                          [&](int, int, int) { return int(random() % 3); });
-        volume.codeBook = CodeBook::ofTable({0, 1e-3 * large, large});
-        volume.valueMin = 0;
-        volume.valueMax = large;
+        test::changed(volume)->codeBook = CodeBook::ofTable({0, 1e-3 * large, large});
+        test::changed(volume)->valueMin = 0;
+        test::changed(volume)->valueMax = large;
         for (const double isovalue : {0.0, 1e-3 * large, 0.5 * large, large, 2 * large}) {
             RenderOptions options = surfaceAt(isovalue);
             options.camera.view = "iso";

@@ -228,7 +228,7 @@ TEST(WideVoxels, haveTheirSums) {
         const Volume volume = allOf(places);
         double held = 0;
         for (const glm::ivec3& at : places) held += double(valueAt(at));
-        if (volume.activeCount < places.size()) held -= 2 * double(valueAt({0, 0, 0}));
+        if (volume.activeCount() < places.size()) held -= 2 * double(valueAt({0, 0, 0}));
         for (CameraOptions camera : camerasOfAll()) {
             if (camera.projection != Projection::kOrtho) continue;
             camera.sizePixels = {256, 256};

@@ -11,7 +11,7 @@ namespace deltasplat::testing {
 /// type.
 template <typename Grid>
 typename Grid::Ptr keptGrid(const Volume& volume) {
-    return openvdb::gridPtrCast<Grid>(toOpenVdb(volume.source->grid));
+    return openvdb::gridPtrCast<Grid>(toOpenVdb(volume.source()->grid));
 }
 
 }  // namespace deltasplat::testing

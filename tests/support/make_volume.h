@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "deltasplat/ingest/volume.h"
+#include "support/changed_volume.h"
 #include "volume/code_tree.h"
 
 namespace deltasplat::test {
@@ -19,7 +20,7 @@ inline constexpr int kInactive = -1;
 inline Volume makeVolume(const IndexBox& box, const std::function<int(int x, int y, int z)>& codeAt,
                          glm::dvec3 voxelSize = glm::dvec3(1)) {
     auto tree = std::make_shared<CodeTree>();
-    Volume volume;
+    VolumeData volume;
     volume.name = "test";
     volume.type = "uint16";
     volume.gridClass = "fog volume";
@@ -41,7 +42,7 @@ inline Volume makeVolume(const IndexBox& box, const std::function<int(int x, int
     }
     for (int c = 0; c < 3; ++c) volume.worldFromIndex[c][c] = voxelSize[c];
     volume.codes = std::move(tree);
-    return volume;
+    return Volume(std::move(volume));
 }
 
 /// A seeded random volume: runs of equal codes along every axis, so that some voxels change and

@@ -36,7 +36,7 @@ inline Optics someOptics(Colors colors) {
     if (colors == Colors::kFire) {
         MediumPart fire;
         Volume heat = randomVolume({{-5, 4, 7}, {20, 33, 22}}, 3, 0.6, {1.1, 1.2, 0.8});
-        heat.worldFromIndex[3] = {0.3, 0, 0, 1};
+        test::changed(heat)->worldFromIndex[3] = {0.3, 0, 0, 1};
         fire.volume = std::make_shared<const Volume>(std::move(heat));
         fire.kelvinScale = 8;
         optics.parts = {fire};

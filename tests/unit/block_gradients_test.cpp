@@ -35,8 +35,8 @@ TEST(BlockGradients, areExactOfLinearFields) {
     for (int axis = 0; axis < 3; ++axis) {
         for (const Subdivision& parts :
              {Subdivision{}, Subdivision{2, 2, {}}, Subdivision{3, 1, {}}, Subdivision{4, 2, {}}}) {
-            GradientReader reader(*volume.codes, axis, parts, scale);
-            const BlockReader blocks(*volume.codes, nullptr, axis, {});
+            GradientReader reader(*volume.codes(), axis, parts, scale);
+            const BlockReader blocks(*volume.codes(), nullptr, axis, {});
             int checked = 0;
             for (const CodeBlock& block : blocks.blocks()) {
                 const auto fields = reader.read(block);
@@ -74,7 +74,7 @@ TEST(BlockGradients, meetTheBackgroundWhereThereIsOne) {
     });
     GradientScale scale = asTheyAre();
     const auto at = [&](const glm::ivec3& index) {
-        GradientReader reader(*one.codes, 2, {}, scale);
+        GradientReader reader(*one.codes(), 2, {}, scale);
         CodeBlock block;
         block.position = toSliceOrder(index, 2) / 8;
         const auto fields = reader.read(block);

@@ -9,12 +9,13 @@
 #include <string>
 
 #include "deltasplat/error.h"
+#include "support/changed_volume.h"
 
 namespace deltasplat {
 namespace {
 
 Volume volumeWithCodes(const std::vector<int>& codes) {
-    Volume volume;
+    VolumeData volume;
     volume.type = "uint16";
     volume.codeBook = CodeBook::integer();
     volume.histogram.assign(kCodeCount, 0);
@@ -23,7 +24,7 @@ Volume volumeWithCodes(const std::vector<int>& codes) {
     volume.box = {glm::ivec3(0), glm::ivec3(int(codes.size()) - 1, 0, 0)};
     volume.valueMin = codes.front();
     volume.valueMax = codes.back();
-    return volume;
+    return Volume(std::move(volume));
 }
 
 // Opacity x / 100 and colour (x / 100, 0, 1), scene-linear.
@@ -75,8 +76,8 @@ TEST(Classify, leavesCodesThatDoNotOccurEmpty) {
 
 TEST(Classify, takesTheSmallestVoxelSizeAsUnitDistance) {
     Volume volume = volumeWithCodes({50});
-    volume.worldFromIndex[0] = {0.5, 0, 0, 0};
-    volume.worldFromIndex[2] = {0, 0, 4, 0};
+    test::changed(volume)->worldFromIndex[0] = {0.5, 0, 0, 0};
+    test::changed(volume)->worldFromIndex[2] = {0, 0, 4, 0};
     const ClassTable table = classify(volume, ramp(), 0.5);
     EXPECT_NEAR(table.scale.a * ClassTable::kMax, 0.5, 1e-12);
 }
@@ -193,7 +194,7 @@ TEST(Classify, classesCanBeColoredForOtherSteps) {
         const ClassTable expected = classify(volume, optics, 1.5);
         EXPECT_EQ(longer.oneColor, !several);
         for (int code = 0; code < 100; ++code) {
-            if (volume.histogram[std::size_t(code)] == 0) continue;
+            if (volume.histogram()[std::size_t(code)] == 0) continue;
             EXPECT_EQ(longer.lightOfCode(Code(code)), expected.lightOfCode(Code(code))) << code;
         }
     }
@@ -202,7 +203,7 @@ TEST(Classify, classesCanBeColoredForOtherSteps) {
 // All 65536 codes look different: one class fewer than that is left for them.
 TEST(Classify, lastTwoOfAllCodesShareAClass) {
     Volume volume = volumeWithCodes({0, 65535});
-    volume.histogram.assign(kCodeCount, 1);
+    test::changed(volume)->histogram.assign(kCodeCount, 1);
     Optics optics = ramp();
     optics.transferFunction.colors = {{0, {0, 1, 0}}, {32767, {1, 1, 0}}, {65535, {1, 0, 0}}};
     optics.transferFunction.opacities = {{0, 0.5, 0.5, 0}, {65535, 0.9, 0.5, 0}};

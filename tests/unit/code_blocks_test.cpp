@@ -31,12 +31,12 @@ Volume someBlocks(int dims) {
 TEST(CodeBlocks, AreListedByColumns) {
     // More leaves than are looked at by one thread at a time.
     const Volume volume = someBlocks(200);
-    ASSERT_GT(volume.codes->leaves()->size(), 3u * 4096);
+    ASSERT_GT(volume.codes()->leaves()->size(), 3u * 4096);
     std::vector<Slot> slots(kSlotCount, kEmptySlot);
     std::fill(slots.begin() + 1 + 200, slots.begin() + 1 + 202, Slot{1});
     for (int axis = 0; axis < 3; ++axis) {
         std::set<Place> expected;
-        for (const CodeLeaf& leaf : *volume.codes->leaves()) {
+        for (const CodeLeaf& leaf : *volume.codes()->leaves()) {
             const glm::ivec3 at = toSliceOrder(leaf.origin >> 3, axis);
             if (leaf.lowest >= 200) expected.insert({at.y, at.z, at.x});
         }
@@ -44,7 +44,7 @@ TEST(CodeBlocks, AreListedByColumns) {
         for (const int threads : {1, 3}) {
             const ThreadLimit limit(threads);
             std::vector<Place> listed;
-            for (const CodeBlock& block : listBlocks(*volume.codes, axis, slots)) {
+            for (const CodeBlock& block : listBlocks(*volume.codes(), axis, slots)) {
                 listed.push_back({block.position.y, block.position.z, block.position.x});
                 ASSERT_NE(block.leaf, nullptr);
                 EXPECT_EQ(toSliceOrder(block.leaf->origin() >> 3, axis), block.position);

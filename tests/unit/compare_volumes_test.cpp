@@ -26,7 +26,7 @@ const IndexBox kBox{glm::ivec3(-21, -9, -13), glm::ivec3(14, 27, 22)};
 
 template <typename Grid>
 Volume volumeOf(const typename Grid::Ptr& grid) {
-    Volume volume;
+    VolumeData volume;
     volume.name = "test";
     volume.type = grid->valueType();
     volume.gridClass = "fog volume";
@@ -36,7 +36,7 @@ Volume volumeOf(const typename Grid::Ptr& grid) {
     volume.box = {{box.min().x(), box.min().y(), box.min().z()},
                   {box.max().x(), box.max().y(), box.max().z()}};
     volume.source = std::make_shared<SourceGrid>(SourceGrid{fromOpenVdb(grid)});
-    return volume;
+    return Volume(std::move(volume));
 }
 
 // Leaves with active and inactive values of all kinds, and tiles of 8^3, within kBox.
@@ -87,13 +87,13 @@ Voxel probe(const Tree& tree, const Coord& at) {
 }
 
 Voxel voxelOf(const Volume& volume, const Coord& at) {
-    if (!volume.source) {
-        const bool active = volume.codes->tree().isValueOn(at);
-        const Code code = volume.codes->tree().getValue(at);
-        return {active ? volume.codeBook.valueOf(code) : volume.background, active};
+    if (!volume.source()) {
+        const bool active = volume.codes()->tree().isValueOn(at);
+        const Code code = volume.codes()->tree().getValue(at);
+        return {active ? volume.codeBook().valueOf(code) : volume.background(), active};
     }
     Voxel voxel;
-    volume.source->grid.apply<ScalarTrees>([&](const auto& tree) { voxel = probe(tree, at); });
+    volume.source()->grid.apply<ScalarTrees>([&](const auto& tree) { voxel = probe(tree, at); });
     return voxel;
 }
 
@@ -108,8 +108,8 @@ VolumeComparison bruteForce(const Volume& a, const Volume& b, const CompareOptio
                 const Voxel va = voxelOf(a, Coord(x, y, z));
                 const Voxel vb = voxelOf(b, Coord(x, y, z));
                 result.activeMismatch += va.active != vb.active;
-                if (!va.active && !vb.active && va.value == a.background &&
-                    vb.value == b.background) {
+                if (!va.active && !vb.active && va.value == a.background() &&
+                    vb.value == b.background()) {
                     continue;
                 }
                 ++result.voxels;
@@ -161,8 +161,8 @@ void expectNothing(const VolumeComparison& result) {
 
 TEST(CompareVolumes, EveryPairOfTypesAsBruteForce) {
     Volume codes = test::randomVolume(kBox, 7);
-    codes.hasBackground = true;
-    codes.background = 0.5;
+    test::changed(codes)->hasBackground = true;
+    test::changed(codes)->background = 0.5;
     const std::vector<Volume> volumes = {randomGrid<openvdb::FloatGrid>(1, 0.3, 0.25),
                                          randomGrid<openvdb::DoubleGrid>(2, 0.7, -3),
                                          randomGrid<openvdb::Int32Grid>(3, 2e8, 5),
@@ -172,7 +172,7 @@ TEST(CompareVolumes, EveryPairOfTypesAsBruteForce) {
                                          codes};
     for (const Volume& a : volumes) {
         for (const Volume& b : volumes) {
-            SCOPED_TRACE(a.type + " and " + b.type);
+            SCOPED_TRACE(a.type() + " and " + b.type());
             expectAsBruteForce(a, b, 0.5, 1e8);
         }
     }
@@ -193,16 +193,16 @@ TEST(CompareVolumes, ManyTopologiesAsBruteForce) {
 
 TEST(CompareVolumes, CodesMeanTheirValues) {
     Volume codes = test::randomVolume(kBox, 3);
-    codes.codeBook = CodeBook::linear(-2, 7, 8);
+    test::changed(codes)->codeBook = CodeBook::linear(-2, 7, 8);
     Volume others = test::randomVolume(kBox, 4);
     std::vector<double> values(256);
     for (int i = 0; i < 256; ++i) values[std::size_t(i)] = std::sqrt(i) - 5;
-    others.codeBook = CodeBook::ofTable(std::move(values));
+    test::changed(others)->codeBook = CodeBook::ofTable(std::move(values));
     expectAsBruteForce(codes, others, 1, 3);
-    others.hasBackground = true;
-    others.background = 2.5;
+    test::changed(others)->hasBackground = true;
+    test::changed(others)->background = 2.5;
     // The dense one takes the other's background where it has no voxels.
-    codes.background = 2.5;
+    test::changed(codes)->background = 2.5;
     expectAsBruteForce(codes, others, 1, 3);
     EXPECT_EQ(compareVolumes(codes, others).backgroundError, 0);
     EXPECT_EQ(compareVolumes(others, codes).backgroundError, 0);
@@ -237,7 +237,7 @@ TEST(CompareVolumes, TheSameForAnyNumberOfThreads) {
         EXPECT_EQ(result.voxels, first.voxels);
     }
     EXPECT_GT(first.meanError, 0.1);
-    EXPECT_EQ(first.voxels, a.source->grid.tree->activeVoxelCount());
+    EXPECT_EQ(first.voxels, a.source()->grid.tree->activeVoxelCount());
 }
 
 TEST(CompareVolumes, HugeTilesAreComparedAsTiles) {
@@ -384,11 +384,11 @@ TEST(CompareVolumes, DenseAgainstSparse) {
         const int value = code(x, y, z);
         return value == 0 ? test::kInactive : value;
     });
-    sparse.hasBackground = true;
+    test::changed(sparse)->hasBackground = true;
     const VolumeComparison result = compareVolumes(dense, sparse);
     EXPECT_EQ(result.maxError, 0);
-    EXPECT_EQ(result.activeMismatch, dense.activeCount - sparse.activeCount);
-    EXPECT_EQ(result.voxels, dense.activeCount);
+    EXPECT_EQ(result.activeMismatch, dense.activeCount() - sparse.activeCount());
+    EXPECT_EQ(result.voxels, dense.activeCount());
     EXPECT_TRUE(result.sizeEqual);
     EXPECT_FALSE(result.equal());
 }
@@ -419,9 +419,9 @@ TEST(CompareVolumes, BackgroundsAreComparedOnce) {
 TEST(CompareVolumes, NamesOfTypesAndClassesAreNoDifference) {
     const Volume a = test::randomVolume(kBox, 1);
     Volume b = a;
-    b.name = "other";
-    b.type = "float";
-    b.gridClass = "level set";
+    test::changed(b)->name = "other";
+    test::changed(b)->type = "float";
+    test::changed(b)->gridClass = "level set";
     const VolumeComparison result = compareVolumes(a, b);
     EXPECT_FALSE(result.nameEqual);
     EXPECT_FALSE(result.typeEqual);
@@ -434,18 +434,18 @@ TEST(CompareVolumes, ShiftIsInVoxels) {
     const IndexBox box{glm::ivec3(0), glm::ivec3(10, 20, 30)};
     const Volume a = test::makeVolume(box, code, glm::dvec3(2, 4, 3));
     Volume b = a;
-    b.worldFromIndex[3][1] = 1;
+    test::changed(b)->worldFromIndex[3][1] = 1;
     EXPECT_DOUBLE_EQ(compareVolumes(a, b).shift, 0.5);
     EXPECT_FALSE(compareVolumes(a, b).transformEqual);
     EXPECT_TRUE(compareVolumes(a, b, {0, 0, 0.5}).transformEqual);
 
     // Another spacing along z moves the voxels of z = 30 by 30 times its difference.
     b = a;
-    b.worldFromIndex[2][2] = 3 + 1e-9;
+    test::changed(b)->worldFromIndex[2][2] = 3 + 1e-9;
     EXPECT_NEAR(compareVolumes(a, b).shift, 30e-9 / 2, 1e-14);
     EXPECT_TRUE(compareVolumes(a, b).transformEqual);
     EXPECT_TRUE(compareVolumes(a, b).equal());
-    b.worldFromIndex[2][2] = 3 + 1e-6;
+    test::changed(b)->worldFromIndex[2][2] = 3 + 1e-6;
     EXPECT_FALSE(compareVolumes(a, b).transformEqual);
     EXPECT_EQ(compareVolumes(a, a).shift, 0);
 }
@@ -453,24 +453,25 @@ TEST(CompareVolumes, ShiftIsInVoxels) {
 // A volume with a source of its own, at the same place in the world, but `offset` further on.
 Volume elsewhere(const Volume& volume, const Coord& offset) {
     Volume result = volume;
-    volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
+    volume.source()->grid.apply<ScalarTrees>([&](const auto& tree) {
         const auto moved = std::make_shared<std::decay_t<decltype(tree)>>(tree.background());
         for (auto voxel = openvdb::CoordBBox(-21, -9, -13, 14, 27, 22).begin(); voxel; ++voxel) {
             moved->setValueOn(*voxel + offset, tree.getValue(*voxel));
             moved->setActiveState(*voxel + offset, tree.isValueOn(*voxel));
         }
-        result.source = std::make_shared<SourceGrid>(SourceGrid{{moved, {}}});
+        test::changed(result)->source = std::make_shared<SourceGrid>(SourceGrid{{moved, {}}});
     });
     const glm::ivec3 way(offset.x(), offset.y(), offset.z());
-    result.box = {volume.box.min + way, volume.box.max + way};
-    result.worldFromIndex = glm::translate(volume.worldFromIndex, -glm::dvec3(way));
+    test::changed(result)->box = {volume.box().min + way, volume.box().max + way};
+    test::changed(result)->worldFromIndex =
+        glm::translate(volume.worldFromIndex(), -glm::dvec3(way));
     return result;
 }
 
 TEST(CompareVolumes, WholeVoxelsApartTheSamePlacesAreCompared) {
     Volume codes = test::randomVolume(kBox, 7);
-    codes.hasBackground = true;
-    codes.background = 0.5;
+    test::changed(codes)->hasBackground = true;
+    test::changed(codes)->background = 0.5;
     // Of a mask, only states matter; of its tiles' values, those that agree with them.
     const auto mask = openvdb::MaskGrid::create();
     mask->fill(openvdb::CoordBBox(-16, -8, -8, 3, 23, 15), true);
@@ -478,9 +479,9 @@ TEST(CompareVolumes, WholeVoxelsApartTheSamePlacesAreCompared) {
         randomGrid<openvdb::FloatGrid>(1, 0.3, 0.25), randomGrid<openvdb::Int64Grid>(4, 1e18, -7),
         randomGrid<openvdb::BoolGrid>(5, 0.2, 0), volumeOf<openvdb::MaskGrid>(mask), codes};
     for (const Volume& a : volumes) {
-        if (!a.source) continue;
+        if (!a.source()) continue;
         for (const Volume& b : volumes) {
-            SCOPED_TRACE(a.type + " and " + b.type);
+            SCOPED_TRACE(a.type() + " and " + b.type());
             const VolumeComparison expected = compareVolumes(a, b);
             const VolumeComparison got = compareVolumes(elsewhere(a, {5, -8, 11}), b);
             EXPECT_EQ(got.offset, glm::ivec3(5, -8, 11));
@@ -500,15 +501,15 @@ TEST(CompareVolumes, OffsetsThatAreNotWholeAreADifference) {
     Volume b = elsewhere(a, {1, 0, 0});
     expectNothing(compareVolumes(a, b));
     EXPECT_EQ(compareVolumes(a, b).offset, glm::ivec3(-1, 0, 0));
-    b.worldFromIndex[3].x += 1e-5;
+    test::changed(b)->worldFromIndex[3].x += 1e-5;
     EXPECT_FALSE(compareVolumes(a, b).transformEqual);
     // Voxels are compared with those nearest to them all the same.
     EXPECT_EQ(compareVolumes(a, b).offset, glm::ivec3(-1, 0, 0));
     EXPECT_EQ(compareVolumes(a, b).maxError, 0);
     EXPECT_NEAR(compareVolumes(a, b).shift, 1e-5, 1e-12);
-    b.worldFromIndex[3].x += 0.49;
+    test::changed(b)->worldFromIndex[3].x += 0.49;
     EXPECT_EQ(compareVolumes(a, b).offset, glm::ivec3(-1, 0, 0));
-    b.worldFromIndex[3].x -= 0.49;
+    test::changed(b)->worldFromIndex[3].x -= 0.49;
     EXPECT_TRUE(compareVolumes(a, b, {0, 0, 1e-4}).transformEqual);
     EXPECT_EQ(compareVolumes(a, b, {0, 0, 1e-4}).offset, glm::ivec3(-1, 0, 0));
 }
@@ -519,12 +520,12 @@ std::pair<Volume, Volume> sparseAndDense(const glm::dmat4& worldFromIndex) {
     const auto code = [](int x, int y, int z) { return 10 + (x * 7 + y * 3 + z * 11) % 200; };
     const glm::ivec3 size(12, 9, 10);
     Volume sparse = test::makeVolume({min, min + size - 1}, code);
-    sparse.hasBackground = true;
-    sparse.worldFromIndex = worldFromIndex;
+    test::changed(sparse)->hasBackground = true;
+    test::changed(sparse)->worldFromIndex = worldFromIndex;
     Volume dense = test::makeVolume({glm::ivec3(0), size - 1}, [&](int x, int y, int z) {
         return code(x + min.x, y + min.y, z + min.z);
     });
-    dense.worldFromIndex = glm::translate(worldFromIndex, glm::dvec3(min));
+    test::changed(dense)->worldFromIndex = glm::translate(worldFromIndex, glm::dvec3(min));
     return {sparse, dense};
 }
 
@@ -548,7 +549,7 @@ glm::dmat4 oddPlace(double distance) {
 // A format of 32-bit floats cannot say the place of a .vdb better than it does.
 TEST(CompareVolumes, PlacesAreEqualAsFarAsBothFormatsTell) {
     auto [sparse, dense] = sparseAndDense(oddPlace(1000));
-    dense.worldFromIndex = asFloats(dense.worldFromIndex);
+    test::changed(dense)->worldFromIndex = asFloats(dense.worldFromIndex());
     for (const bool turned : {false, true}) {
         CompareOptions options = withFloatsInB();
         if (turned) std::swap(options.placeDigitsA, options.placeDigitsB);
@@ -566,9 +567,10 @@ TEST(CompareVolumes, PlacesAreEqualAsFarAsBothFormatsTell) {
     // So would floats, a little farther away.
     for (int number = 0; number < 3; ++number) {
         Volume moved = dense;
-        double& place = moved.worldFromIndex[3][number];
+        double place = moved.worldFromIndex()[3][number];
         place = double(std::nextafter(float(place), 1e9F));
         place = double(std::nextafter(float(place), 1e9F));
+        test::changed(moved)->worldFromIndex[3][number] = place;
         EXPECT_FALSE(compareVolumes(sparse, moved, withFloatsInB()).transformEqual) << number;
     }
 }
@@ -576,7 +578,7 @@ TEST(CompareVolumes, PlacesAreEqualAsFarAsBothFormatsTell) {
 // Far away floats are voxels apart: what is where is said by the boxes then.
 TEST(CompareVolumes, PlacesCoarserThanVoxels) {
     auto [sparse, dense] = sparseAndDense(oddPlace(1e8));
-    dense.worldFromIndex = asFloats(dense.worldFromIndex);
+    test::changed(dense)->worldFromIndex = asFloats(dense.worldFromIndex());
     const VolumeComparison result = compareVolumes(sparse, dense, withFloatsInB());
     EXPECT_GT(result.shift, 0.5);
     EXPECT_EQ(result.offset, glm::ivec3(100, -40, 7));
@@ -589,7 +591,7 @@ TEST(CompareVolumes, UnsignedIntegersAreExact) {
         auto grid = openvdb::Int64Grid::create(0);
         grid->tree().setValueOn(Coord(1, 2, 3), std::int64_t(value));
         Volume volume = volumeOf<openvdb::Int64Grid>(grid);
-        volume.type = "uint64";
+        test::changed(volume)->type = "uint64";
         return volume;
     };
     constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
@@ -612,7 +614,7 @@ TEST(CompareVolumes, DenseVolumesThatOverlapInPart) {
     const auto code = [](int, int, int) { return 3; };
     const Volume a = test::makeVolume({glm::ivec3(0), glm::ivec3(9)}, code);
     Volume b = a;
-    b.worldFromIndex[3].x = 4;
+    test::changed(b)->worldFromIndex[3].x = 4;
     const VolumeComparison result = compareVolumes(a, b);
     EXPECT_EQ(result.offset, glm::ivec3(4, 0, 0));
     EXPECT_TRUE(result.transformEqual);
@@ -623,16 +625,17 @@ TEST(CompareVolumes, DenseVolumesThatOverlapInPart) {
 TEST(CompareVolumes, PatientSpacesAreComparedInOne) {
     const auto code = [](int, int, int) { return 3; };
     Volume a = test::makeVolume(kBox, code, glm::dvec3(2, 4, 3));
-    a.worldFromIndex[3] = {10, 20, 30, 1};
+    test::changed(a)->worldFromIndex[3] = {10, 20, 30, 1};
     Volume b = a;
-    b.worldFromIndex = glm::dmat4({-2, 0, 0, 0}, {0, -4, 0, 0}, {0, 0, 3, 0}, {-10, -20, 30, 1});
-    a.space = "RAS";
-    b.space = "LPS";
+    test::changed(b)->worldFromIndex =
+        glm::dmat4({-2, 0, 0, 0}, {0, -4, 0, 0}, {0, 0, 3, 0}, {-10, -20, 30, 1});
+    test::changed(a)->space = "RAS";
+    test::changed(b)->space = "LPS";
     EXPECT_EQ(compareVolumes(a, b).shift, 0);
     EXPECT_EQ(compareVolumes(b, a).shift, 0);
-    b.space = "RAS";
+    test::changed(b)->space = "RAS";
     EXPECT_GT(compareVolumes(a, b).shift, 1);
-    b.space.clear();
+    test::changed(b)->space = "";
     EXPECT_GT(compareVolumes(a, b).shift, 1);
 }
 

@@ -49,7 +49,7 @@ void forVoxels(const IndexBox& box, const Use& use) {
 
 int codeIn(const Volume& volume, const glm::ivec3& at) {
     Code code = 0;
-    return volume.codes->tree().probeValue({at.x, at.y, at.z}, code) ? code : test::kInactive;
+    return volume.codes()->tree().probeValue({at.x, at.y, at.z}, code) ? code : test::kInactive;
 }
 
 IndexBox grown(const IndexBox& box, int by) {
@@ -61,7 +61,7 @@ void expectCut(const Volume& whole, const Volume& cut, const Keeps& keeps) {
     std::map<int, std::uint64_t> counts;
     std::uint64_t active = 0;
     int wrong = 0;
-    forVoxels(grown(whole.box, 2), [&](const glm::ivec3& at) {
+    forVoxels(grown(whole.box(), 2), [&](const glm::ivec3& at) {
         const int before = codeIn(whole, at);
         const int expected = before >= 0 && keeps(at) ? before : test::kInactive;
         if (codeIn(cut, at) != expected) ++wrong;
@@ -71,33 +71,33 @@ void expectCut(const Volume& whole, const Volume& cut, const Keeps& keeps) {
     });
     EXPECT_EQ(wrong, 0);
     ASSERT_GT(active, 0u) << "a test of nothing";
-    EXPECT_LT(active, whole.activeCount) << "a test of nothing";
-    EXPECT_EQ(cut.activeCount, active);
-    EXPECT_EQ(cut.codes->tree().activeVoxelCount(), active);
-    ASSERT_EQ(cut.histogram.size(), std::size_t(kCodeCount));
+    EXPECT_LT(active, whole.activeCount()) << "a test of nothing";
+    EXPECT_EQ(cut.activeCount(), active);
+    EXPECT_EQ(cut.codes()->tree().activeVoxelCount(), active);
+    ASSERT_EQ(cut.histogram().size(), std::size_t(kCodeCount));
     std::uint64_t sum = 0;
-    for (const std::uint64_t count : cut.histogram) sum += count;
+    for (const std::uint64_t count : cut.histogram()) sum += count;
     EXPECT_EQ(sum, active);
     std::pair<int, std::uint64_t> most{0, 0};
     for (const auto& [code, count] : counts) {
-        EXPECT_EQ(cut.histogram[std::size_t(code)], count) << code;
+        EXPECT_EQ(cut.histogram()[std::size_t(code)], count) << code;
         if (count > most.second) most = {code, count};
     }
-    EXPECT_EQ(cut.valueMin, counts.begin()->first);
-    EXPECT_EQ(cut.valueMax, counts.rbegin()->first);
-    ASSERT_TRUE(cut.mostFrequent);
-    EXPECT_EQ(cut.mostFrequent->value, most.first);
-    EXPECT_EQ(cut.mostFrequent->count, most.second);
-    EXPECT_EQ(cut.uncut, whole.codes);
-    EXPECT_EQ(cut.worldFromIndex, whole.worldFromIndex);
+    EXPECT_EQ(cut.valueMin(), counts.begin()->first);
+    EXPECT_EQ(cut.valueMax(), counts.rbegin()->first);
+    ASSERT_TRUE(cut.mostFrequent());
+    EXPECT_EQ(cut.mostFrequent()->value, most.first);
+    EXPECT_EQ(cut.mostFrequent()->count, most.second);
+    EXPECT_EQ(cut.uncut(), whole.codes());
+    EXPECT_EQ(cut.worldFromIndex(), whole.worldFromIndex());
 }
 
 // By the formula of the documentation, which shares nothing with the code.
 bool isBeyond(const Volume& volume, const ClipPlane& plane, const glm::ivec3& at) {
-    const glm::dvec3 way = worldOf(volume.worldFromIndex, at) - plane.pointWorld;
+    const glm::dvec3 way = worldOf(volume.worldFromIndex(), at) - plane.pointWorld;
     double extent = 0;
     for (int axis = 0; axis < 3; ++axis)
-        extent += std::abs(glm::dot(plane.normalWorld, glm::dvec3(volume.worldFromIndex[axis])));
+        extent += std::abs(glm::dot(plane.normalWorld, glm::dvec3(volume.worldFromIndex()[axis])));
     return glm::dot(way, plane.normalWorld) >= -1e-6 * extent;
 }
 
@@ -112,7 +112,7 @@ bool isIn(const IndexBox& box, const glm::ivec3& at) {
 IndexBox tightBox(const Volume& volume) {
     IndexBox box;
     bool any = false;
-    forVoxels(volume.box, [&](const glm::ivec3& at) {
+    forVoxels(volume.box(), [&](const glm::ivec3& at) {
         if (codeIn(volume, at) < 0) return;
         box = any ? IndexBox{glm::min(box.min, at), glm::max(box.max, at)} : IndexBox{at, at};
         any = true;
@@ -126,13 +126,13 @@ Volume denseVolume(int seed = 1) {
 
 Volume sparseVolume() {
     Volume volume = test::randomVolume(kBox, 7, 0.9);
-    volume.hasBackground = true;
+    test::changed(volume)->hasBackground = true;
     return volume;
 }
 
 // A tile of 128x128x128 voxels, and some of 8x8x8.
 Volume tiledVolume() {
-    Volume volume;
+    VolumeData volume;
     volume.name = "tiles";
     volume.codeBook = CodeBook::integer();
     volume.box = {glm::ivec3(-16), glm::ivec3(143)};
@@ -142,7 +142,7 @@ Volume tiledVolume() {
     volume.activeCount = std::uint64_t(volume.box.voxels());
     volume.codes = codes;
     EXPECT_EQ(codes->tree().leafCount(), 0u);
-    return volume;
+    return Volume(std::move(volume));
 }
 
 glm::dvec3 randomVector(std::mt19937& random) {
@@ -166,8 +166,8 @@ TEST(CutVolume, boxesOfIndices) {
         cut.cropIndex = box;
         const Volume left = cutVolume(volume, cut);
         expectCut(volume, left, [&](const glm::ivec3& at) { return isIn(box, at); });
-        EXPECT_EQ(left.box.min, glm::max(box.min, kBox.min));
-        EXPECT_EQ(left.box.max, glm::min(box.max, kBox.max));
+        EXPECT_EQ(left.box().min, glm::max(box.min, kBox.min));
+        EXPECT_EQ(left.box().max, glm::min(box.max, kBox.max));
     }
 }
 
@@ -181,46 +181,46 @@ TEST(CutVolume, slices) {
         expectCut(volume, left, [&](const glm::ivec3& at) {
             return at[axis] >= slices.x && at[axis] <= slices.y;
         });
-        EXPECT_EQ(left.box.dims()[axis], 8);
-        EXPECT_EQ(left.box.dims()[(axis + 1) % 3], kBox.dims()[(axis + 1) % 3]);
+        EXPECT_EQ(left.box().dims()[axis], 8);
+        EXPECT_EQ(left.box().dims()[(axis + 1) % 3], kBox.dims()[(axis + 1) % 3]);
     }
 }
 
 TEST(CutVolume, boxesInTheWorld) {
     Volume volume = denseVolume();
-    volume.worldFromIndex = obliqueMatrix();
+    test::changed(volume)->worldFromIndex = obliqueMatrix();
     std::mt19937 random(4);
     for (int round = 0; round < 20; ++round) {
-        const glm::dvec3 middle = worldOf(volume.worldFromIndex, glm::dvec3(6, 12, -3));
+        const glm::dvec3 middle = worldOf(volume.worldFromIndex(), glm::dvec3(6, 12, -3));
         const glm::dvec3 half = 4.0 + 5.0 * glm::abs(randomVector(random));
         Cut cut;
         cut.cropWorld = WorldBox{middle - half, middle + half};
         const Volume left = cutVolume(volume, cut);
         expectCut(volume, left, [&](const glm::ivec3& at) {
-            const glm::dvec3 off = glm::abs(worldOf(volume.worldFromIndex, at) - middle);
+            const glm::dvec3 off = glm::abs(worldOf(volume.worldFromIndex(), at) - middle);
             return off.x <= half.x && off.y <= half.y && off.z <= half.z;
         });
-        EXPECT_EQ(left.box, tightBox(left));
+        EXPECT_EQ(left.box(), tightBox(left));
     }
 }
 
 // Sides that voxel centres lie on keep them, whatever 3 * 0.1 is in binary.
 TEST(CutVolume, sidesOfAWorldBoxAreInside) {
     Volume volume = denseVolume();
-    volume.worldFromIndex = glm::dmat4(1);
-    for (int axis = 0; axis < 3; ++axis) volume.worldFromIndex[axis][axis] = 0.1;
+    test::changed(volume)->worldFromIndex = glm::dmat4(1);
+    for (int axis = 0; axis < 3; ++axis) test::changed(volume)->worldFromIndex[axis][axis] = 0.1;
     Cut cut;
     cut.cropWorld = WorldBox{{-0.3, 0.3, -1.1}, {0.3, 1.2, 0.6}};
-    EXPECT_EQ(cutVolume(volume, cut).box, (IndexBox{{-3, 3, -11}, {3, 12, 6}}));
+    EXPECT_EQ(cutVolume(volume, cut).box(), (IndexBox{{-3, 3, -11}, {3, 12, 6}}));
 }
 
 TEST(CutVolume, planes) {
     Volume volume = denseVolume();
     std::mt19937 random(5);
     for (int round = 0; round < 30; ++round) {
-        volume.worldFromIndex = round % 2 ? obliqueMatrix() : glm::dmat4(1);
+        test::changed(volume)->worldFromIndex = round % 2 ? obliqueMatrix() : glm::dmat4(1);
         Cut cut;
-        const glm::dvec3 middle = worldOf(volume.worldFromIndex, glm::dvec3(6, 12, -3));
+        const glm::dvec3 middle = worldOf(volume.worldFromIndex(), glm::dvec3(6, 12, -3));
         for (int plane = 0; plane <= round % 3; ++plane) {
             // The middle is left by all of them.
             const glm::dvec3 way = 4.0 * randomVector(random);
@@ -235,7 +235,7 @@ TEST(CutVolume, planes) {
             }
             return true;
         });
-        EXPECT_EQ(left.box, volume.box) << "the camera stays";
+        EXPECT_EQ(left.box(), volume.box()) << "the camera stays";
     }
 }
 
@@ -255,7 +255,7 @@ TEST(CutVolume, tilesAreSplit) {
     const Volume left = cutVolume(volume, cut);
     expectCut(volume, left,
               [&](const glm::ivec3& at) { return isBeyond(volume, cut.clipPlanes[0], at); });
-    EXPECT_GT(left.codes->tree().activeTileCount(), 1000u) << "what is uniform stays tiles";
+    EXPECT_GT(left.codes()->tree().activeTileCount(), 1000u) << "what is uniform stays tiles";
 
     cut = {};
     cut.cropIndex = IndexBox{glm::ivec3(-13), glm::ivec3(100)};
@@ -269,9 +269,9 @@ TEST(CutVolume, ofSparseOnesTheBoxIsTight) {
     cut.cropIndex = IndexBox{{-4, 4, -10}, {5, 12, -1}};
     const Volume left = cutVolume(volume, cut);
     expectCut(volume, left, [&](const glm::ivec3& at) { return isIn(*cut.cropIndex, at); });
-    EXPECT_EQ(left.box, tightBox(left));
+    EXPECT_EQ(left.box(), tightBox(left));
     cut.clipPlanes = {{{0, 6, 0}, {0.1, 1, 0}}};
-    EXPECT_EQ(cutVolume(volume, cut).box, left.box);
+    EXPECT_EQ(cutVolume(volume, cut).box(), left.box());
 }
 
 bool isKept(const Volume& mask, const glm::dvec3& at) {
@@ -297,18 +297,19 @@ class Warnings {
 
 TEST(CutVolume, masksByIndex) {
     Volume volume = denseVolume();
-    volume.worldFromIndex = obliqueMatrix();
+    test::changed(volume)->worldFromIndex = obliqueMatrix();
     auto mask = std::make_shared<Volume>(someMask(kBox));
-    mask->worldFromIndex = volume.worldFromIndex;
+    test::changed(*mask)->worldFromIndex = volume.worldFromIndex();
     Cut cut;
     cut.mask = mask;
     Warnings warnings;
     const Volume left = cutVolume(volume, cut, warnings.listener());
     expectCut(volume, left, [&](const glm::ivec3& at) { return isKept(*mask, at); });
-    EXPECT_EQ(left.box, volume.box);
+    EXPECT_EQ(left.box(), volume.box());
 
     // By whole voxels, and as exactly as a file of floats states it.
-    mask->worldFromIndex[3] += 3.0 * mask->worldFromIndex[1] + glm::dvec4(1e-5, 0, 0, 0);
+    test::changed(*mask)->worldFromIndex[3] +=
+        3.0 * test::changed(*mask)->worldFromIndex[1] + glm::dvec4(1e-5, 0, 0, 0);
     expectCut(volume, cutVolume(volume, cut, warnings.listener()),
               [&](const glm::ivec3& at) { return isKept(*mask, at - glm::ivec3(0, 3, 0)); });
     EXPECT_EQ(warnings.text, "");
@@ -317,13 +318,13 @@ TEST(CutVolume, masksByIndex) {
 // Each in its own unit of length.
 TEST(CutVolume, masksInOtherUnits) {
     Volume volume = denseVolume();
-    volume.worldFromIndex = obliqueMatrix();
-    volume.lengthUnit = "mm";
+    test::changed(volume)->worldFromIndex = obliqueMatrix();
+    test::changed(volume)->lengthUnit = "mm";
     auto mask = std::make_shared<Volume>(someMask(kBox));
-    mask->worldFromIndex = volume.worldFromIndex;
+    test::changed(*mask)->worldFromIndex = volume.worldFromIndex();
     for (int column = 0; column < 4; ++column)
-        mask->worldFromIndex[column] *= glm::dvec4(0.1, 0.1, 0.1, 1);
-    mask->lengthUnit = "cm";
+        test::changed(*mask)->worldFromIndex[column] *= glm::dvec4(0.1, 0.1, 0.1, 1);
+    test::changed(*mask)->lengthUnit = "cm";
     Cut cut;
     cut.mask = mask;
     Warnings warnings;
@@ -334,18 +335,19 @@ TEST(CutVolume, masksInOtherUnits) {
 
 TEST(CutVolume, masksByPlace) {
     Volume volume = denseVolume();
-    volume.worldFromIndex = obliqueMatrix();
+    test::changed(volume)->worldFromIndex = obliqueMatrix();
     auto mask = std::make_shared<Volume>(someMask({{-40, -40, -40}, {40, 40, 40}}));
-    mask->worldFromIndex = glm::dmat4(1);
-    for (int axis = 0; axis < 3; ++axis) mask->worldFromIndex[axis][axis] = 2.2 - 0.5 * axis;
+    test::changed(*mask)->worldFromIndex = glm::dmat4(1);
+    for (int axis = 0; axis < 3; ++axis)
+        test::changed(*mask)->worldFromIndex[axis][axis] = 2.2 - 0.5 * axis;
     // No voxel lies half way between two of the mask.
-    mask->worldFromIndex[3] = {7.1317, -3.3171, 4.7713, 1};
+    test::changed(*mask)->worldFromIndex[3] = {7.1317, -3.3171, 4.7713, 1};
     Cut cut;
     cut.mask = mask;
     Warnings warnings;
     expectCut(volume, cutVolume(volume, cut, warnings.listener()), [&](const glm::ivec3& at) {
-        const glm::dvec3 place =
-            worldOf(volume.worldFromIndex, at) - glm::dvec3(mask->worldFromIndex[3]);
+        const glm::dvec3 place = worldOf(volume.worldFromIndex(), at) -
+                                 glm::dvec3(test::changed(*mask)->worldFromIndex[3]);
         return isKept(*mask, place / glm::dvec3(2.2, 1.7, 1.2));
     });
     EXPECT_EQ(warnings.text,
@@ -375,7 +377,7 @@ TEST(CutVolume, allTogetherAndOneAfterTheOther) {
         return isIn(*cut.cropIndex, at) && at.z >= -6 && at.x <= 9 &&
                isBeyond(volume, cut.clipPlanes[0], at) && isKept(*cut.mask, at);
     });
-    EXPECT_EQ(left.box, (IndexBox{{-3, 5, -6}, {9, 20, 3}}));
+    EXPECT_EQ(left.box(), (IndexBox{{-3, 5, -6}, {9, 20, 3}}));
 
     Volume twice = volume;
     Cut parts[3];
@@ -385,18 +387,18 @@ TEST(CutVolume, allTogetherAndOneAfterTheOther) {
     parts[1].clipPlanes = cut.clipPlanes;
     parts[2].mask = cut.mask;
     for (const Cut& part : parts) twice = cutVolume(twice, part);
-    EXPECT_EQ(twice.histogram, left.histogram);
-    EXPECT_EQ(twice.box, left.box);
-    EXPECT_EQ(twice.uncut, volume.codes);
+    EXPECT_EQ(twice.histogram(), left.histogram());
+    EXPECT_EQ(twice.box(), left.box());
+    EXPECT_EQ(twice.uncut(), volume.codes());
 }
 
 TEST(CutVolume, colorsStay) {
     Volume volume = denseVolume();
-    volume.valueMax = 255;
+    test::changed(volume)->valueMax = 255;
     Cut cut;
     cut.cropIndex = IndexBox{kBox.min, kBox.min};
     const Volume left = cutVolume(volume, cut);
-    EXPECT_EQ(left.activeCount, 1u);
+    EXPECT_EQ(left.activeCount(), 1u);
     EXPECT_EQ(bulkRange(left), bulkRange(volume));
 }
 
@@ -413,13 +415,13 @@ TEST(CutVolume, theSourceIsCutAsWell) {
     options.bits = 8;
     options.keepSource = true;
     const Volume volume = makeVolume(std::span<const double>(values), layout, options);
-    ASSERT_FALSE(volume.codeBook.isExact());
+    ASSERT_FALSE(volume.codeBook().isExact());
     Cut cut;
     cut.clipPlanes = {{{8, 6, 10}, {0.3, -1, 0.6}}};
     const Volume left = cutVolume(volume, cut);
     std::vector<double> found(values.size());
     std::vector<std::uint8_t> active(values.size());
-    readVoxels(left, left.box, found, active);
+    readVoxels(left, left.box(), found, active);
     double low = 1e300;
     double high = -1e300;
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -432,9 +434,9 @@ TEST(CutVolume, theSourceIsCutAsWell) {
         low = std::min(low, values[i]);
         high = std::max(high, values[i]);
     }
-    EXPECT_EQ(left.valueMin, low);
-    EXPECT_EQ(left.valueMax, high);
-    EXPECT_GT(low, volume.valueMin) << "a test of nothing";
+    EXPECT_EQ(left.valueMin(), low);
+    EXPECT_EQ(left.valueMax(), high);
+    EXPECT_GT(low, volume.valueMin()) << "a test of nothing";
 }
 
 TEST(CutVolume, sharesOfVoxels) {
@@ -464,7 +466,7 @@ TEST(CutVolume, sharesOfVoxels) {
 
 TEST(CutVolume, nothingToCut) {
     const Volume volume = denseVolume();
-    EXPECT_EQ(cutVolume(volume, {}).codes, volume.codes);
+    EXPECT_EQ(cutVolume(volume, {}).codes(), volume.codes());
     Cut cut;
     cut.cropIndex = IndexBox{glm::ivec3(100), glm::ivec3(110)};
     Volume empty = test::makeVolume({}, [](int, int, int) { return 0; });

@@ -21,7 +21,7 @@ using SlotMap = std::map<Voxel, Slot>;
 SlotMap slotsOf(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap = {}) {
     SlotMap slots;
     const glm::ivec3 order = sliceOrder(sliceAxis);
-    for (auto voxel = volume.codes->tree().cbeginValueOn(); voxel; ++voxel) {
+    for (auto voxel = volume.codes()->tree().cbeginValueOn(); voxel; ++voxel) {
         const openvdb::CoordBBox box = voxel.getBoundingBox();
         for (auto c = box.begin(); c; ++c) {
             const Slot slot = slotMap.empty() ? *voxel + 1 : slotMap[*voxel + 1];
@@ -67,7 +67,7 @@ TEST(DeltaGrid, SumOfDeltasGivesBackTheVolume) {
         for (int axis = 0; axis < 3; ++axis) {
             const DeltaGrid grid = makeDeltaGrid(volume, {axis, 8, {}});
             EXPECT_EQ(sumOfDeltas(grid), slotsOf(volume, axis)) << b << " axis " << axis;
-            EXPECT_EQ(grid.visible(), volume.activeCount);
+            EXPECT_EQ(grid.visible(), volume.activeCount());
         }
     }
 }
@@ -101,17 +101,17 @@ TEST(DeltaGrid, TilesCountAsTheirVoxels) {
     tree->tree().addTile(1, openvdb::Coord(0, 0, 0), Code{5}, true);
     tree->tree().addTile(2, openvdb::Coord(128, 0, -128), Code{9}, true);
     tree->tree().setValueOn(openvdb::Coord(8, 0, 0), Code{5});
-    Volume volume;
+    VolumeData volume;
     volume.codes = tree;
     volume.activeCount = 512 + 128 * 128 * 128 + 1;
     volume.box = {{0, 0, -128}, {255, 127, 7}};
     for (int axis = 0; axis < 3; ++axis) {
-        const DeltaGrid grid = makeDeltaGrid(volume, {axis, 64, {}});
-        EXPECT_EQ(sumOfDeltas(grid), slotsOf(volume, axis)) << "axis " << axis;
+        const DeltaGrid grid = makeDeltaGrid(Volume(volume), {axis, 64, {}});
+        EXPECT_EQ(sumOfDeltas(grid), slotsOf(Volume(volume), axis)) << "axis " << axis;
     }
     // Along x: 64 + 128 * 128 enter at key slices only, 64 - 1 leave after x = 7 and the last one
     // after x = 8.
-    const SliceCounts counts = countDeltas(volume, 0);
+    const SliceCounts counts = countDeltas(Volume(volume), 0);
     EXPECT_EQ(counts.visible, volume.activeCount);
     EXPECT_EQ(counts.deltas, 64 + 63 + 1 + 128 * 128);
 }
@@ -120,14 +120,14 @@ TEST(DeltaGrid, TilesCountAsTheirVoxels) {
 TEST(DeltaGrid, LeavesWithoutActiveVoxelsCountForNothing) {
     Volume volume = test::randomVolume(boxes()[2], 5);
     const Volume plain = volume;
-    const auto codes = std::make_shared<CodeTree>(std::in_place, plain.codes->tree());
+    const auto codes = std::make_shared<CodeTree>(std::in_place, plain.codes()->tree());
     for (const openvdb::Coord& far : {openvdb::Coord(-900, 3, 500), openvdb::Coord(4, 700, -88),
                                       openvdb::Coord(2000, -300, 0)}) {
         codes->tree().setValueOn(far, 7);
         codes->tree().setActiveState(far, false);
     }
-    ASSERT_EQ(codes->tree().leafCount(), plain.codes->tree().leafCount() + 3);
-    volume.codes = codes;
+    ASSERT_EQ(codes->tree().leafCount(), plain.codes()->tree().leafCount() + 3);
+    test::changed(volume)->codes = codes;
     for (int axis = 0; axis < 3; ++axis) {
         const DeltaGrid grid = makeDeltaGrid(volume, {axis, 8, {}});
         const DeltaGrid expected = makeDeltaGrid(plain, {axis, 8, {}});
@@ -173,10 +173,10 @@ TEST(DeltaGrid, SameOnEveryNumberOfThreads) {
 }
 
 TEST(DeltaGrid, EmptyVolumeHasNoSlabs) {
-    Volume volume;
+    VolumeData volume;
     volume.codes = std::make_shared<CodeTree>();
-    EXPECT_TRUE(makeDeltaGrid(volume, {}).slabs.empty());
-    EXPECT_EQ(countDeltas(volume, 0).deltas, 0u);
+    EXPECT_TRUE(makeDeltaGrid(Volume(volume), {}).slabs.empty());
+    EXPECT_EQ(countDeltas(Volume(volume), 0).deltas, 0u);
 }
 
 TEST(DeltaGrid, RefusesKeyIntervalsThatCutLeaves) {

@@ -595,7 +595,7 @@ TEST(DeltaStreamError, CodesThatDeltasDoNotAddUpTo) {
         return std::vector<std::string>{
             test::errorOf([] { readVolume("a.vdb"); }),
             test::errorOf([&] { readVolume("a.vdb", whole); }),
-            test::errorOf([&] { readVolume("a.vdb", later).codes->tree(); })};
+            test::errorOf([&] { readVolume("a.vdb", later).codes()->tree(); })};
     };
     rewrite(index);
     EXPECT_EQ(refusals(), std::vector<std::string>(3, "no error"));

@@ -70,11 +70,11 @@ TEST(ImageJ, StackInOneDirectory) {
         writeOneDirectory("a.tif", text, 10, bigEndian);
         Warnings warnings;
         const Volume volume = readVolume("a.tif", {}, warnings.listener());
-        EXPECT_EQ(volume.box.dims(), glm::ivec3(4, 3, 10));
-        EXPECT_EQ(volume.type, "uint16");
+        EXPECT_EQ(volume.box().dims(), glm::ivec3(4, 3, 10));
+        EXPECT_EQ(volume.type(), "uint16");
         EXPECT_EQ(valuesOf(volume), ramp<double>(120));
         EXPECT_LT(glm::length(volume.voxelSize() - glm::dvec3(0.1, 0.1, 0.3)), 1e-12);
-        EXPECT_EQ(volume.lengthUnit, "um");
+        EXPECT_EQ(volume.lengthUnit(), "um");
         EXPECT_TRUE(warnings.lines.empty());
     }
     writePages("b.tif", text, 10);
@@ -87,7 +87,7 @@ TEST(ImageJ, SpacingAndUnits) {
         writeOneDirectory("a.tif", "ImageJ=1.53t\nimages=2\nslices=2\n" + text, 2);
         const Volume volume = readVolume("a.tif", options);
         const glm::dvec3 size = volume.voxelSize();
-        return std::to_string(size.x) + " " + std::to_string(size.z) + " " + volume.lengthUnit;
+        return std::to_string(size.x) + " " + std::to_string(size.z) + " " + volume.lengthUnit();
     };
     EXPECT_EQ(placeOf("unit=\\u00B5m\nspacing=-2"), "0.100000 2.000000 um");
     EXPECT_EQ(placeOf("unit=cm\r\n"), "0.100000 1.000000 cm");
@@ -147,7 +147,7 @@ TEST(ImageJ, Calibration) {
     Warnings none;
     // Numbers with a sign, as ImageJ keeps them.
     const Volume whole = read("cf=0\nc0=-32768\nc1=1\nvunit=gray value\n", none);
-    EXPECT_EQ(whole.type, "int16");
+    EXPECT_EQ(whole.type(), "int16");
     EXPECT_EQ(valuesOf(whole), ramp<double>(24, -32768));
     EXPECT_EQ(valuesOf(read("c0=10\nc1=0.5\n", none)), ramp<double>(24, 10, 0.5));
     EXPECT_EQ(valuesOf(read("c0=0\nc1=1\nmin=3\nmax=7\n", none)), ramp<double>(24));
@@ -168,7 +168,7 @@ TEST(ImageJ, ColoursAndFloats) {
     page.description = "ImageJ=1.53t\nimages=2\nslices=2\n";
     writeBytes("a.tif", tiffBytes({page}, true, bytesOf(ramp<std::uint8_t>(3 * kPixels, 36))));
     const Volume volume = readVolume("a.tif");
-    ASSERT_EQ(volume.box.dims(), glm::ivec3(4, 3, 2));
+    ASSERT_EQ(volume.box().dims(), glm::ivec3(4, 3, 2));
     // 0.2126 a + 0.7152 (a + 1) + 0.0722 (a + 2)
     EXPECT_EQ(valuesOf(volume), ramp<double>(24, 1, 3));
     TiffPageBytes real;
@@ -228,7 +228,7 @@ TEST(ImageJ, PlanesBeyondFourGigabytes) {
     ReadOptions options;
     options.volume = kFrames - 1;
     const Volume volume = readVolume("a.tif", options);
-    EXPECT_EQ(volume.box.dims(), glm::ivec3(kSide, kSide, 2));
+    EXPECT_EQ(volume.box().dims(), glm::ivec3(kSide, kSide, 2));
     EXPECT_EQ(valueAt(volume, 5, 0, 0), 7);
     EXPECT_EQ(valueAt(volume, 3, 0, 1), 9);
     EXPECT_EQ(valueAt(volume, 0, 0, 0), 0);
@@ -341,7 +341,7 @@ TEST(Ome, SizesOfVoxels) {
         const Volume volume = readVolume("a.tif", {}, warnings.listener());
         const glm::dvec3 size = volume.voxelSize();
         return std::to_string(size.x) + " " + std::to_string(size.y) + " " +
-               std::to_string(size.z) + " " + volume.lengthUnit;
+               std::to_string(size.z) + " " + volume.lengthUnit();
     };
     Warnings none;
     EXPECT_EQ(placeOf("PhysicalSizeX='0.2' PhysicalSizeY='0.3' PhysicalSizeZ='1.5'", none),
@@ -417,7 +417,7 @@ TEST(Tiff, ThumbnailsAreLeftOut) {
     EXPECT_EQ(valuesIn("s.#.tif"), ramp<double>(24));
     // A picture that is small itself is one.
     writeBytes("b.tif", tiffBytes({small}));
-    EXPECT_EQ(readVolume("b.tif").box.dims(), glm::ivec3(2, 1, 1));
+    EXPECT_EQ(readVolume("b.tif").box().dims(), glm::ivec3(2, 1, 1));
 }
 
 // Packs numbers of few bits, rows ending with whole bytes.
@@ -516,8 +516,8 @@ TEST(Palettes, ColoursOrNumbers) {
         Warnings warnings;
         const Volume colors = readVolume(file, {}, warnings.listener());
         EXPECT_EQ(warnings.lines, Lines{file + kPaletteRemark});
-        EXPECT_EQ(colors.valueMin, 100);
-        EXPECT_EQ(colors.valueMax, 100);
+        EXPECT_EQ(colors.valueMin(), 100);
+        EXPECT_EQ(colors.valueMax(), 100);
         Warnings none;
         EXPECT_EQ(valuesOf(readVolume(file, asNumbers, none.listener())),
                   std::vector<double>(numbers.begin(), numbers.end()))

@@ -111,7 +111,7 @@ TEST(EmissionLights, haveThePowerOfABall) {
             EXPECT_EQ(lights.size(), std::size_t(count));
             expectNear(intensityOf(lights), intensityOfBall(kRadius), 0.01);
             // Of as many voxels exactly.
-            const double voxels = double(ball->activeCount) * voxel.x * voxel.y * voxel.z;
+            const double voxels = double(ball->activeCount()) * voxel.x * voxel.y * voxel.z;
             expectNear(intensityOf(lights), 0.75 * kOrange * voxels, 1e-9);
         }
     }
@@ -177,7 +177,7 @@ TEST(EmissionLights, haveThePowerOfBlackBodies) {
     const glm::dvec3 sum = intensityOf(emissionLights(*ball, opticsOf({fire}), 6));
     const double luminance = 0.2126 * sum.r + 0.7152 * sum.g + 0.0722 * sum.b;
     const double glow = 2 * 5.670374e-14 * std::pow(kKelvin, 4) / kPi;
-    EXPECT_NEAR(luminance / (glow / 2 * double(ball->activeCount)), 1, 1e-3);
+    EXPECT_NEAR(luminance / (glow / 2 * double(ball->activeCount())), 1, 1e-3);
 }
 
 // Of grids that are coarser, finer or moved, and of several; of what swallows light nothing.

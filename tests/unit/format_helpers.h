@@ -15,15 +15,15 @@ namespace deltasplat::testing {
 
 /// Returns the value of the voxel (x, y, z).
 inline double valueAt(const Volume& volume, int x, int y, int z) {
-    return volume.codeBook.valueOf(volume.codes->tree().getValue(openvdb::Coord(x, y, z)));
+    return volume.codeBook().valueOf(volume.codes()->tree().getValue(openvdb::Coord(x, y, z)));
 }
 
 /// Returns all values, x fastest.
 inline std::vector<double> valuesOf(const Volume& volume) {
     std::vector<double> values;
-    for (int z = 0; z <= volume.box.max.z; ++z) {
-        for (int y = 0; y <= volume.box.max.y; ++y) {
-            for (int x = 0; x <= volume.box.max.x; ++x) {
+    for (int z = 0; z <= volume.box().max.z; ++z) {
+        for (int y = 0; y <= volume.box().max.y; ++y) {
+            for (int x = 0; x <= volume.box().max.x; ++x) {
                 values.push_back(valueAt(volume, x, y, z));
             }
         }

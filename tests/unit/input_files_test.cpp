@@ -97,7 +97,7 @@ TEST(InputFiles, ReadersConfineWhenAsked) {
     ReadOptions options;
     options.raw.dims = {2, 2, 1};
     options.raw.type = "uint8";
-    EXPECT_EQ(readVolume("in/a.raw", options).activeCount, 4u);
+    EXPECT_EQ(readVolume("in/a.raw", options).activeCount(), 4u);
     confineInputs();
     expectError(ErrorCode::kInput,
                 "in/a.raw: got the file in/a.raw outside of its folder; expected files inside of "

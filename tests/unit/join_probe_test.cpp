@@ -45,7 +45,7 @@ std::optional<JoinedChange> changeOf(const Shape& shape, const Lines& lines,
     classes[4] = 2;
     const std::vector<glm::dvec4> lights = {
         glm::dvec4(0), {0, 0, 0.875, 0.875}, {0.00875, 0, 0, 0.00875}};
-    const JoinProbe probe(listBlocks(*volume.codes, listedAlong, classes), listedAlong, classes);
+    const JoinProbe probe(listBlocks(*volume.codes(), listedAlong, classes), listedAlong, classes);
     const SightLines all{kAxis, lines.frontToBack, lines.shiftPerSlice, lights};
     return probe.change(joined, [&](const glm::ivec3&) { return all; });
 }
@@ -182,7 +182,7 @@ TEST(JoinProbe, isTheSameFarAway) {
                 const glm::ivec3 at = glm::ivec3(x, y, z) - place;
                 return at.x % 16 == 3 && (at.y + at.z / 4) % 8 == 5 ? 7 : test::kInactive;
             });
-        const JoinProbe probe(listBlocks(*volume.codes, kAxis, classes), kAxis, classes);
+        const JoinProbe probe(listBlocks(*volume.codes(), kAxis, classes), kAxis, classes);
         const SightLines lines{kAxis, true, {0.5, -0.25}, lights};
         return probe.change(joined, [&](const glm::ivec3&) { return lines; }).value();
     };

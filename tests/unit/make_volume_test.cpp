@@ -60,12 +60,12 @@ TYPED_TEST_SUITE(MakeVolume, VoxelTypes);
 TYPED_TEST(MakeVolume, voxelsComeBack) {
     const std::vector<TypeParam> values = someValues<TypeParam>();
     const Volume volume = makeVolume(view(values), {kDims});
-    EXPECT_EQ(volume.activeCount, values.size());
-    EXPECT_FALSE(volume.hasBackground);
-    EXPECT_EQ(volume.box, (IndexBox{{0, 0, 0}, glm::ivec3(kDims) - 1}));
+    EXPECT_EQ(volume.activeCount(), values.size());
+    EXPECT_FALSE(volume.hasBackground());
+    EXPECT_EQ(volume.box(), (IndexBox{{0, 0, 0}, glm::ivec3(kDims) - 1}));
     std::vector<double> back(values.size());
     std::vector<std::uint8_t> active(values.size());
-    readVoxels(volume, volume.box, back, active);
+    readVoxels(volume, volume.box(), back, active);
     for (std::size_t i = 0; i < values.size(); ++i) {
         ASSERT_EQ(back[i], double(values[i])) << i;
         ASSERT_EQ(active[i], 1);
@@ -79,9 +79,9 @@ TYPED_TEST(MakeVolume, whatIsBackgroundIsEmpty) {
     const Volume volume = makeVolume(view(values), layout);
     const auto there = std::size_t(
         std::count_if(values.begin(), values.end(), [](TypeParam v) { return v != TypeParam{}; }));
-    EXPECT_EQ(volume.activeCount, there);
-    EXPECT_TRUE(volume.hasBackground);
-    EXPECT_EQ(volume.background, 0);
+    EXPECT_EQ(volume.activeCount(), there);
+    EXPECT_TRUE(volume.hasBackground());
+    EXPECT_EQ(volume.background(), 0);
     // Also beyond what is there.
     const IndexBox box{{-2, -1, -3}, glm::ivec3(kDims) + 2};
     std::vector<double> back(std::size_t(box.voxels()));
@@ -102,7 +102,7 @@ TYPED_TEST(MakeVolume, whatIsBackgroundIsEmpty) {
     }
     // A grid of it and back again.
     const Volume again = makeVolume(makeGrid(volume));
-    EXPECT_EQ(again.activeCount, there);
+    EXPECT_EQ(again.activeCount(), there);
     EXPECT_EQ(pictureOf(again).rgba, pictureOf(volume).rgba);
 }
 
@@ -135,8 +135,8 @@ TEST(MakeVolumeOfFile, isWhatTheReaderMakes) {
                std::streamsize(values.size() * sizeof(float)));
     const Volume read = readVolume(file);
     const Volume made = makeVolume(view(values), {kDims});
-    EXPECT_EQ(made.histogram, read.histogram);
-    EXPECT_EQ(made.type, read.type);
+    EXPECT_EQ(made.histogram(), read.histogram());
+    EXPECT_EQ(made.type(), read.type());
     EXPECT_EQ(pictureOf(made).rgba, pictureOf(read).rgba);
 }
 
@@ -150,14 +150,14 @@ TEST(MakeVolumeOfReals, comesBackExactlyWhereTheSourceIsKept) {
         ReadOptions options;
         options.keepSource = true;
         const Volume kept = makeVolume(view(values), layout, options);
-        EXPECT_FALSE(kept.codeBook.isExact());
+        EXPECT_FALSE(kept.codeBook().isExact());
         std::vector<double> back(values.size());
-        readVoxels(kept, kept.box, back);
+        readVoxels(kept, kept.box(), back);
         EXPECT_EQ(back, values);
         const Volume coded = makeVolume(view(values), layout);
-        readVoxels(coded, coded.box, back);
+        readVoxels(coded, coded.box(), back);
         for (std::size_t i = 0; i < values.size(); ++i)
-            ASSERT_LE(std::abs(back[i] - values[i]), coded.codeError.absolute * (1 + 1e-12));
+            ASSERT_LE(std::abs(back[i] - values[i]), coded.codeError().absolute * (1 + 1e-12));
     }
 }
 
@@ -169,19 +169,19 @@ TEST(MakeVolumeOfReals, takesNaNAsItIsAsked) {
     EXPECT_THROW(makeVolume(view(values), layout), Error);
     ReadOptions options;
     options.nanValue = 7;
-    EXPECT_EQ(makeVolume(view(values), layout, options).replaced, 2u);
+    EXPECT_EQ(makeVolume(view(values), layout, options).replaced(), 2u);
     // As the background NaN is what is not there.
     layout.background = kNaN;
     const Volume holes = makeVolume(view(values), layout);
-    EXPECT_EQ(holes.activeCount, values.size() - 2);
-    EXPECT_EQ(holes.background, 0);
+    EXPECT_EQ(holes.activeCount(), values.size() - 2);
+    EXPECT_EQ(holes.background(), 0);
     // But not infinity, or what is no number beside another background.
     values[7] = std::numeric_limits<float>::infinity();
     EXPECT_THROW(makeVolume(view(values), layout), Error);
     values[7] = 1;
     layout.background = 0;
     EXPECT_THROW(makeVolume(view(values), layout), Error);
-    EXPECT_EQ(makeVolume(view(values), layout, options).replaced, 2u);
+    EXPECT_EQ(makeVolume(view(values), layout, options).replaced(), 2u);
 }
 
 TEST(MakeVolumeErrors, sayWhatWasGotAndExpected) {
@@ -236,7 +236,7 @@ TEST(MakeVolumeErrors, sayWhatWasGotAndExpected) {
               }).find("expected indices within 2^30 of 0"),
               std::string::npos);
     std::vector<double> few(23);
-    EXPECT_EQ(errorOf([&] { readVoxels(volume, volume.box, few); }),
+    EXPECT_EQ(errorOf([&] { readVoxels(volume, volume.box(), few); }),
               "usage: voxels to read: values: got 23 values; expected 24");
 }
 
@@ -248,7 +248,7 @@ TEST(MakeVolumeOfGrid, leavesTheGridAsItIs) {
     for (int x = -3; x <= 3; ++x) grid->tree().setValueOn({x, 1, 2}, float(x));
     const auto before = grid->deepCopy();
     const Volume fog = makeVolume(openvdb::GridBase::ConstPtr(grid));
-    EXPECT_EQ(fog.name, "surface");
+    EXPECT_EQ(fog.name(), "surface");
     EXPECT_EQ(grid->background(), 3);
     for (auto voxel = before->cbeginValueOn(); voxel; ++voxel)
         EXPECT_EQ(grid->tree().getValue(voxel.getCoord()), *voxel);
@@ -257,7 +257,7 @@ TEST(MakeVolumeOfGrid, leavesTheGridAsItIs) {
     options.levelSetToFog = false;
     options.keepSource = true;
     const Volume kept = makeVolume(openvdb::GridBase::ConstPtr(grid), options);
-    EXPECT_EQ(kept.activeCount, 7u);
+    EXPECT_EQ(kept.activeCount(), 7u);
     EXPECT_EQ(makeGrid(kept).get(), static_cast<openvdb::GridBase*>(grid.get()));
 }
 
@@ -270,8 +270,8 @@ TEST(MakeVolumeOfGrid, keepsThePatientsSpace) {
         ReadOptions options;
         options.keepSource = keep;
         const Volume volume = makeVolume(view(values), layout, options);
-        EXPECT_EQ(volume.space, "RAS");
-        EXPECT_EQ(makeVolume(makeGrid(volume)).space, "RAS");
+        EXPECT_EQ(volume.space(), "RAS");
+        EXPECT_EQ(makeVolume(makeGrid(volume)).space(), "RAS");
     }
 }
 

@@ -37,7 +37,7 @@ std::vector<Slot> plainClasses() {
 
 Classes classesOf(const Volume& volume, int axis, const std::vector<Slot>& classOfSlot) {
     Classes classes;
-    for (auto voxel = volume.codes->tree().cbeginValueOn(); voxel; ++voxel) {
+    for (auto voxel = volume.codes()->tree().cbeginValueOn(); voxel; ++voxel) {
         openvdb::CoordBBox box;
         voxel.getBoundingBox(box);
         const Slot found = classOfSlot[*voxel + 1];
@@ -172,13 +172,13 @@ TEST(PackedDeltas, TakeClassesThatFollowEachOther) {
         rising[slot] = slot - 60;
         pieces[slot] = slot < 70 ? slot + 130 : slot < 250 ? slot - 69 : 180;
     }
-    CodeTree::Tree tree = test::randomVolume(kBox, 5).codes->tree();
+    CodeTree::Tree tree = test::randomVolume(kBox, 5).codes()->tree();
     std::mt19937 random(6);
     for (auto leaf = tree.beginLeaf(); leaf; ++leaf)
         for (auto off = leaf->beginValueOff(); off; ++off)
             leaf->setValueOnly(off.pos(), Code(random() % 2 == 0 ? random() % 256 : random()));
     Volume volume = test::randomVolume(kBox, 5);
-    volume.codes = std::make_shared<CodeTree>(std::in_place, tree);
+    test::changed(volume)->codes = std::make_shared<CodeTree>(std::in_place, tree);
     std::vector<double> extinctions(257, 0.01);
     extinctions[0] = 0;
     const SliceJoiner joiner = SliceJoiner::ofSums(extinctions);
@@ -404,10 +404,10 @@ TEST(PackedDeltas, JoinSlicesOfTiles) {
     Volume volume = test::makeVolume({{0, 0, 0}, {63, 63, 63}}, [](int x, int y, int z) {
         return x < 32 ? 200 : (x + y + z) % 3 == 0 ? 90 : test::kInactive;
     });
-    const auto pruned = std::make_shared<CodeTree>(std::in_place, volume.codes->tree());
+    const auto pruned = std::make_shared<CodeTree>(std::in_place, volume.codes()->tree());
     pruned->tree().prune();
     Volume tiled = volume;
-    tiled.codes = pruned;
+    test::changed(tiled)->codes = pruned;
     const std::vector<Slot> classes = plainClasses();
     const SliceJoiner joiner = SliceJoiner::ofPairs(40);
     for (int axis = 0; axis < 3; ++axis) {
@@ -460,14 +460,14 @@ TEST(PackedDeltas, TakeTilesOfTheTree) {
     Volume volume = test::makeVolume({{0, 0, 0}, {63, 63, 63}}, [](int x, int y, int z) {
         return x < 32 ? 200 : (x + y + z) % 3 == 0 ? 90 : test::kInactive;
     });
-    const auto pruned = std::make_shared<CodeTree>(std::in_place, volume.codes->tree());
+    const auto pruned = std::make_shared<CodeTree>(std::in_place, volume.codes()->tree());
     pruned->tree().prune();
-    EXPECT_LT(pruned->tree().leafCount(), volume.codes->tree().leafCount());
+    EXPECT_LT(pruned->tree().leafCount(), volume.codes()->tree().leafCount());
     const std::vector<Slot> classes = plainClasses();
     for (int axis = 0; axis < 3; ++axis) {
         const Classes expected = classesOf(volume, axis, classes);
         Volume tiled = volume;
-        tiled.codes = pruned;
+        test::changed(tiled)->codes = pruned;
         EXPECT_EQ(walk(packDeltas(tiled, {axis, Encoding::kChanges, classes, {}})), expected);
     }
 }
@@ -526,9 +526,9 @@ TEST(PackedDeltas, HoldsTheSameWhereManyCodesAreSeen) {
 }
 
 TEST(PackedDeltas, EmptyVolumeHasNoSlabs) {
-    Volume volume;
+    VolumeData volume;
     volume.codes = std::make_shared<CodeTree>();
-    const PackedDeltas packed = packDeltas(volume, {});
+    const PackedDeltas packed = packDeltas(Volume(volume), {});
     EXPECT_TRUE(packed.slabs.empty());
     EXPECT_EQ(packed.visible(), 0u);
 }

@@ -56,14 +56,14 @@ void expectSame(const VolumeComparison& a, const VolumeComparison& b) {
 }
 
 void expectSame(const Volume& packed, const Volume& whole) {
-    EXPECT_EQ(packed.name, whole.name);
-    EXPECT_EQ(packed.type, whole.type);
-    EXPECT_EQ(packed.gridClass, whole.gridClass);
-    EXPECT_EQ(packed.background, whole.background);
-    EXPECT_EQ(packed.hasBackground, whole.hasBackground);
-    EXPECT_EQ(packed.activeCount, whole.activeCount);
-    EXPECT_EQ(packed.box, whole.box);
-    EXPECT_EQ(packed.worldFromIndex, whole.worldFromIndex);
+    EXPECT_EQ(packed.name(), whole.name());
+    EXPECT_EQ(packed.type(), whole.type());
+    EXPECT_EQ(packed.gridClass(), whole.gridClass());
+    EXPECT_EQ(packed.background(), whole.background());
+    EXPECT_EQ(packed.hasBackground(), whole.hasBackground());
+    EXPECT_EQ(packed.activeCount(), whole.activeCount());
+    EXPECT_EQ(packed.box(), whole.box());
+    EXPECT_EQ(packed.worldFromIndex(), whole.worldFromIndex());
 }
 
 void writeOne(const std::string& file, const openvdb::GridBase::ConstPtr& grid) {

@@ -126,7 +126,7 @@ TEST(Presets, ofARangeAreAStepWhereNearlyAllIsOneValue) {
             if (x + y + z == 0) return 1000;
             return x + y + z == 1 && most > 0 ? most - 1 : most;
         });
-        volume.background = 60000;
+        test::changed(volume)->background = 60000;
         for (const char* name : {"viridis", "fire", "mr"}) {
             SCOPED_TRACE(name + std::to_string(most));
             Optics optics;
@@ -154,8 +154,8 @@ TEST(Presets, ofARangeAreAStepWhereNearlyAllIsOneValue) {
 Volume scan(double air, double tissue, const std::string& space = "LPS") {
     Volume volume =
         test::makeVolume({{0, 0, 0}, {9, 9, 9}}, [](int x, int, int) { return x < 2 ? x : 2; });
-    volume.codeBook = CodeBook::ofTable({-3024, air, tissue});
-    volume.space = space;
+    test::changed(volume)->codeBook = CodeBook::ofTable({-3024, air, tissue});
+    test::changed(volume)->space = space;
     return volume;
 }
 

@@ -100,8 +100,8 @@ TEST(DicomFiles, NamesOfAllKinds) {
         writeBytes(name, DicomFile().bytes());
         EXPECT_EQ(valuesOf(readVolume(name)), kRamp) << name;
     }
-    EXPECT_EQ(readVolume("1.2.840.113619.2").name, "1.2.840.113619.2");
-    EXPECT_EQ(readVolume("P1.MR.HEAD.0002.IMA").name, "P1.MR.HEAD.0002");
+    EXPECT_EQ(readVolume("1.2.840.113619.2").name(), "1.2.840.113619.2");
+    EXPECT_EQ(readVolume("P1.MR.HEAD.0002.IMA").name(), "P1.MR.HEAD.0002");
     writeBytes("text.xyz", "text");
     expectInputError("text.xyz");
 }
@@ -164,7 +164,7 @@ TEST(DicomFiles, StudiesListTheirSeries) {
         "disc");
     ReadOptions options;
     options.series = "1.2.6";
-    EXPECT_EQ(readVolume("disc", options).box.dims(), glm::ivec3(3, 2, 2));
+    EXPECT_EQ(readVolume("disc", options).box().dims(), glm::ivec3(3, 2, 2));
 }
 
 // On a disc slices may lie on top and below; in other folders those on top are what is meant.
@@ -172,9 +172,9 @@ TEST(DicomFiles, SlicesAboveOthers) {
     const TempFolder folder;
     writeDisc({"1.2.5"});
     writeBytes("disc/top", sliceOf("1.2.5", 2).bytes());
-    EXPECT_EQ(readVolume("disc").box.dims(), glm::ivec3(3, 2, 3));
+    EXPECT_EQ(readVolume("disc").box().dims(), glm::ivec3(3, 2, 3));
     std::filesystem::remove("disc/DICOMDIR");
-    EXPECT_EQ(readVolume("disc").box.dims(), glm::ivec3(3, 2, 1));
+    EXPECT_EQ(readVolume("disc").box().dims(), glm::ivec3(3, 2, 1));
 }
 
 // Slices that have lost their headers are missed on discs as well; a broken link elsewhere is not.
@@ -183,7 +183,7 @@ TEST(DicomFiles, CutSlicesOnDiscs) {
     writeDisc({"1.2.5"});
     std::filesystem::create_directory("disc/viewer");
     std::filesystem::create_symlink("nowhere", "disc/viewer/library");
-    EXPECT_EQ(readVolume("disc").box.dims(), glm::ivec3(3, 2, 2));
+    EXPECT_EQ(readVolume("disc").box().dims(), glm::ivec3(3, 2, 2));
     writeBytes("disc/DICOM/PAT0/STU0/SER0/IMG2", "");
     expectRefused(
         "disc/DICOM/PAT0/STU0/SER0: got IMG2, which is named as its slices are but is no DICOM; "
@@ -196,15 +196,15 @@ TEST(DicomFiles, PicturesBesideSlices) {
     const TempFolder folder;
     writeDisc({"1.2.5"});
     std::filesystem::remove("disc/DICOMDIR");
-    EXPECT_EQ(readVolume("disc").box.dims(), glm::ivec3(3, 2, 2));
+    EXPECT_EQ(readVolume("disc").box().dims(), glm::ivec3(3, 2, 2));
     for (int i = 0; i < 3; ++i) {
         writeBytes("disc/slice" + std::to_string(i) + ".pgm",
                    "P5\n2 2\n255\n" + std::string(4, char(i)));
     }
     std::filesystem::remove("disc/logo.png");
-    EXPECT_EQ(readVolume("disc").box.dims(), glm::ivec3(2, 2, 3));
+    EXPECT_EQ(readVolume("disc").box().dims(), glm::ivec3(2, 2, 3));
     std::filesystem::remove("disc/slice2.pgm");
-    EXPECT_EQ(readVolume("disc").box.dims(), glm::ivec3(3, 2, 2));
+    EXPECT_EQ(readVolume("disc").box().dims(), glm::ivec3(3, 2, 2));
 }
 
 }  // namespace

@@ -133,7 +133,7 @@ TEST(DicomFrames, OffsetsOfDoses) {
         file.more[0x3004000c] = decimalText(one.offsets);
         const Volume volume = readFile(file);
         for (int i = 0; i < 3; ++i) {
-            const glm::dvec4 place = volume.worldFromIndex * glm::dvec4(0, 0, i, 1);
+            const glm::dvec4 place = volume.worldFromIndex() * glm::dvec4(0, 0, i, 1);
             const auto frame = std::size_t(valueAt(volume, 0, 0, i));
             EXPECT_EQ(place, glm::dvec4(5, 6, one.places.at(frame), 1))
                 << one.orientation << " " << one.z << " " << one.offsets;
@@ -152,7 +152,7 @@ TEST(DicomFrames, OffsetsOfDosesAlongOtherAxes) {
     file.position = "5\\6\\10";
     file.more[0x3004000c] = decimalText("10\\12");
     const Volume volume = readFile(file);
-    EXPECT_EQ(volume.worldFromIndex[2], glm::dvec4(-2, 0, 0, 0));
+    EXPECT_EQ(volume.worldFromIndex()[2], glm::dvec4(-2, 0, 0, 0));
     EXPECT_EQ(valuesOf(volume), (std::vector<double>{0, 1}));
 }
 
@@ -217,7 +217,7 @@ TEST(DicomFrames, PaddingOfOneByte) {
         const Volume volume = readFile(file);
         std::string empty;  // the places of voxels that are nothing
         for (int i = 0; i < 6; ++i) {
-            const bool isOn = volume.codes->tree().isValueOn(openvdb::Coord(i % 3, i / 3, 0));
+            const bool isOn = volume.codes()->tree().isValueOn(openvdb::Coord(i % 3, i / 3, 0));
             if (!isOn) empty += std::to_string(i);
         }
         return empty;

@@ -56,11 +56,11 @@ TEST(ReadDicom, SortedByPlace) {
     write(slices(11));
     for (const std::string name : {"scan", "scan/"}) {
         const Volume volume = readVolume(name);
-        EXPECT_EQ(volume.name, "scan");
-        EXPECT_EQ(volume.type, "uint16");
-        EXPECT_EQ(volume.space, "LPS");
-        EXPECT_EQ(volume.box.dims(), glm::ivec3(3, 2, 11));
-        EXPECT_EQ(volume.worldFromIndex,
+        EXPECT_EQ(volume.name(), "scan");
+        EXPECT_EQ(volume.type(), "uint16");
+        EXPECT_EQ(volume.space(), "LPS");
+        EXPECT_EQ(volume.box().dims(), glm::ivec3(3, 2, 11));
+        EXPECT_EQ(volume.worldFromIndex(),
                   glm::dmat4(0.25, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 2, 0, 10, 20, 30, 1));
         EXPECT_EQ(valuesOf(volume), expected(11));
     }
@@ -76,7 +76,7 @@ TEST(ReadDicom, AlongAnyNormal) {
     }
     write(files);
     const Volume volume = readVolume("scan");
-    EXPECT_EQ(volume.worldFromIndex,
+    EXPECT_EQ(volume.worldFromIndex(),
               glm::dmat4(0, 0.25, 0, 0, 0, 0, -0.5, 0, -3, 0, 0, 0, 50, 20, 30, 1));
     EXPECT_EQ(valuesOf(volume), expected(3));
 }
@@ -89,7 +89,7 @@ TEST(ReadDicom, TiltedGantry) {
             "10\\" + std::to_string(20 + i) + "\\" + std::to_string(30 + 2 * i);
     }
     write(files);
-    EXPECT_EQ(readVolume("scan").worldFromIndex[2], glm::dvec4(0, 1, 2, 0));
+    EXPECT_EQ(readVolume("scan").worldFromIndex()[2], glm::dvec4(0, 1, 2, 0));
 }
 
 TEST(ReadDicom, Rescale) {
@@ -98,7 +98,7 @@ TEST(ReadDicom, Rescale) {
     for (DicomFile& file : files) file.intercept = "-1000";
     write(files);
     const Volume volume = readVolume("scan");
-    EXPECT_EQ(volume.type, "int32");  // uint16 - 1000
+    EXPECT_EQ(volume.type(), "int32");  // uint16 - 1000
     EXPECT_EQ(valuesOf(volume), expected(3, 1, -1000));
     for (DicomFile& file : files) file.slope = "0.5";
     write(files);
@@ -113,7 +113,7 @@ TEST(ReadDicom, RescaleOfEachSlice) {
     files[2].slope = "0.25";
     write(files);
     const Volume volume = readVolume("scan");
-    EXPECT_EQ(volume.type, "float64");
+    EXPECT_EQ(volume.type(), "float64");
     EXPECT_EQ(valueAt(volume, 1, 0, 0), 1);
     EXPECT_EQ(valueAt(volume, 1, 0, 1), 50.5);
     EXPECT_EQ(valueAt(volume, 1, 0, 2), 50.25);
@@ -125,7 +125,7 @@ TEST(ReadDicom, SignedPixels) {
     for (DicomFile& file : files) file.isSigned = true;
     files[0].pixels[0] = 0xffff;
     write(files);
-    EXPECT_EQ(readVolume("scan").type, "int16");
+    EXPECT_EQ(readVolume("scan").type(), "int16");
     EXPECT_EQ(valueAt(readVolume("scan"), 0, 0, 0), -1);
 }
 
@@ -221,7 +221,7 @@ TEST(ReadDicom, OneSlice) {
     for (const std::string& name : {std::string("scan"), nameOf(0)}) {
         const Volume volume = readVolume(name);
         EXPECT_EQ(volume.voxelSize(), glm::dvec3(0.25, 0.5, 3));
-        EXPECT_EQ(volume.name, name == "scan" ? "scan" : "a");
+        EXPECT_EQ(volume.name(), name == "scan" ? "scan" : "a");
     }
 }
 
@@ -361,7 +361,7 @@ TEST(ReadDicom, SeriesAreChosen) {
     EXPECT_EQ(valuesOf(readVolume("scan", options)), expected(5));
     options.series = "1.2.99";
     const Volume second = readVolume("scan", options);
-    EXPECT_EQ(second.box.dims(), glm::ivec3(6, 1, 3));
+    EXPECT_EQ(second.box().dims(), glm::ivec3(6, 1, 3));
     EXPECT_EQ(valuesOf(second), expected(3));
     const std::string all =
         "1.2.100 (CT, Dose report, 1 file), 1.2.3 (CT, 3x2x5), 1.2.99 (CT, Scout, 6x1x3)";
@@ -401,7 +401,7 @@ TEST(ReadDicom, TheOnlySeries) {
         ReadOptions options;
         options.series = uid;
         EXPECT_EQ(valuesOf(readVolume("scan", options)), expected(3));
-        EXPECT_EQ(readVolume(nameOf(0), options).box.dims(), glm::ivec3(3, 2, 1));
+        EXPECT_EQ(readVolume(nameOf(0), options).box().dims(), glm::ivec3(3, 2, 1));
         options.series = "1.2";
         expectInputError("scan", options);
         expectInputError(nameOf(0), options);

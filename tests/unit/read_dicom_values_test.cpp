@@ -20,9 +20,9 @@ constexpr double kEmpty = -12345;  // stands for an inactive voxel below
 
 // Returns all values, x fastest, those of inactive voxels as kEmpty.
 std::vector<double> activeValues(const Volume& volume) {
-    std::vector<double> values(std::size_t(volume.box.voxels()));
+    std::vector<double> values(std::size_t(volume.box().voxels()));
     std::vector<std::uint8_t> active(values.size());
-    readVoxels(volume, volume.box, values, active);
+    readVoxels(volume, volume.box(), values, active);
     for (std::size_t i = 0; i < values.size(); ++i)
         if (active[i] == 0) values[i] = kEmpty;
     return values;
@@ -54,7 +54,7 @@ TEST(DicomValues, ModalityTable) {
     DicomFile file = withoutSlope();
     file.more[0x00283000] = tableOf({3, 2, 16}, {100, 400, 60000});
     const Volume volume = readFile(file);
-    EXPECT_EQ(volume.type, "uint16");
+    EXPECT_EQ(volume.type(), "uint16");
     // Stored are 0 to 5; what lies before and behind the table has its ends' values.
     EXPECT_EQ(valuesOf(volume), (std::vector<double>{100, 100, 100, 400, 60000, 60000}));
 
@@ -95,7 +95,7 @@ TEST(DicomValues, ModalityTableShapes) {
     const std::vector<double> six{9, 8, 7, 6, 5, 4};
     file.more[0x00283000] = withData({6, 0, 8}, {"OW", "\x09\x08\x07\x06\x05\x04"});
     EXPECT_EQ(valuesOf(readFile(file)), six);
-    EXPECT_EQ(readVolume("a.dcm").type, "int16");
+    EXPECT_EQ(readVolume("a.dcm").type(), "int16");
     file.more[0x00283000] = withData({6, 0, 8}, wordsOf({9, 8, 7, 6, 5, 4}));
     EXPECT_EQ(valuesOf(readFile(file)), six);
     std::vector<std::uint16_t> all(65536);
@@ -129,8 +129,8 @@ TEST(DicomValues, DoseOfSeveralFrames) {
     for (const std::string offsets : {"0\\2.5\\5", "30\\32.5\\35"}) {
         file.more[0x3004000c] = decimalText(offsets);
         const Volume volume = readFile(file);
-        EXPECT_EQ(volume.box.dims(), glm::ivec3(3, 2, 3));
-        EXPECT_EQ(volume.worldFromIndex,
+        EXPECT_EQ(volume.box().dims(), glm::ivec3(3, 2, 3));
+        EXPECT_EQ(volume.worldFromIndex(),
                   glm::dmat4(0.25, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 2.5, 0, 10, 20, 30, 1));
         EXPECT_EQ(valueAt(volume, 2, 1, 2), 17 * 0.2);
     }
@@ -218,15 +218,15 @@ TEST(DicomValues, PaddingIsNothing) {
     file.more[0x00280120] = wordsOf({0xf830});
     Warnings warnings;
     const Volume volume = readFile(file, warnings.listener());
-    EXPECT_EQ(volume.type, "int32");
+    EXPECT_EQ(volume.type(), "int32");
     EXPECT_EQ(activeValues(volume), (std::vector<double>{kEmpty, -2024, 56, kEmpty, 176, 96}));
-    EXPECT_EQ(volume.activeCount, 4u);
-    EXPECT_EQ(volume.valueMin, -2024);
-    EXPECT_EQ(volume.valueMax, 176);
-    EXPECT_TRUE(volume.hasBackground);
-    EXPECT_EQ(volume.background, -2024);
-    EXPECT_EQ(volume.box.dims(), glm::ivec3(3, 2, 1));
-    EXPECT_EQ(volume.space, "LPS");
+    EXPECT_EQ(volume.activeCount(), 4u);
+    EXPECT_EQ(volume.valueMin(), -2024);
+    EXPECT_EQ(volume.valueMax(), 176);
+    EXPECT_TRUE(volume.hasBackground());
+    EXPECT_EQ(volume.background(), -2024);
+    EXPECT_EQ(volume.box().dims(), glm::ivec3(3, 2, 1));
+    EXPECT_EQ(volume.space(), "LPS");
     EXPECT_EQ(warnings.lines,
               Lines{"a.dcm: 2 voxels hold what fills pictures up and count as nothing"});
     EXPECT_EQ(listVolumes("a.dcm")[0].type, "int32");
@@ -243,7 +243,7 @@ TEST(DicomValues, PaddingThatNoVoxelHas) {
     file.more[0x00280120] = wordsOf({63536});
     Warnings warnings;
     const Volume volume = readFile(file, warnings.listener());
-    EXPECT_EQ(volume.type, "uint16");
+    EXPECT_EQ(volume.type(), "uint16");
     EXPECT_EQ(activeValues(volume), (std::vector<double>{0, 1, 2, 3, 4, 5}));
     EXPECT_EQ(warnings.lines, Lines{});
 }
@@ -256,7 +256,7 @@ TEST(DicomValues, PaddingAboveAllValues) {
     file.more[0x00280120] = wordsOf({65535});
     const Volume volume = readFile(file);
     EXPECT_EQ(activeValues(volume), (std::vector<double>{kEmpty, -1024, 0, kEmpty, 976, -1021}));
-    EXPECT_EQ(volume.valueMax, 976);
+    EXPECT_EQ(volume.valueMax(), 976);
 }
 
 // The limit of a range may lie above the value or below it.
@@ -297,7 +297,7 @@ TEST(DicomValues, PaddingUnderSlopesOfEachSlice) {
         writeBytes("scan/" + std::to_string(i), file.bytes());
     }
     const Volume volume = readVolume("scan");
-    EXPECT_EQ(volume.type, "float64");
+    EXPECT_EQ(volume.type(), "float64");
     EXPECT_EQ(activeValues(volume), (std::vector<double>{0, 0.5, kEmpty, 1.5, 2, 2.5, 0, 0.125,
                                                          kEmpty, 0.375, 0.5, 0.625}));
 }
@@ -493,20 +493,20 @@ TEST(DicomValues, MosaicsAreTakenApart) {
     const TempFolder folder;
     const std::vector<double> up{0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13};
     Volume volume = readFile(mosaic("1.0"));
-    EXPECT_EQ(volume.box.dims(), glm::ivec3(2, 2, 3));
+    EXPECT_EQ(volume.box().dims(), glm::ivec3(2, 2, 3));
     EXPECT_EQ(valuesOf(volume), up);
     // In the middle of 4x4 voxels of 0.25 x 0.5 from (10, 20, 30) on.
-    EXPECT_EQ(volume.worldFromIndex,
+    EXPECT_EQ(volume.worldFromIndex(),
               glm::dmat4(0.25, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 3, 0, 10.25, 20.5, 30, 1));
     // Slices that follow against the normal of rows and columns.
     volume = readFile(mosaic("-1.0"));
-    EXPECT_EQ(volume.worldFromIndex[2], glm::dvec4(0, 0, 3, 0));
-    EXPECT_EQ(volume.worldFromIndex[3], glm::dvec4(10.25, 20.5, 24, 1));
+    EXPECT_EQ(volume.worldFromIndex()[2], glm::dvec4(0, 0, 3, 0));
+    EXPECT_EQ(volume.worldFromIndex()[3], glm::dvec4(10.25, 20.5, 24, 1));
     EXPECT_EQ(valuesOf(volume), (std::vector<double>{8, 9, 12, 13, 2, 3, 6, 7, 0, 1, 4, 5}));
     DicomFile file = mosaic("1.0");
     file.more[0x00291010] = {"OB", firstTableOfTexts("-1.0")};
     const Volume first = readFile(file);
-    EXPECT_EQ(first.worldFromIndex, volume.worldFromIndex);
+    EXPECT_EQ(first.worldFromIndex(), volume.worldFromIndex());
     EXPECT_EQ(valuesOf(first), valuesOf(volume));
     // The count alone, in a block of its own number.
     file.more.erase(0x00290010);
@@ -570,7 +570,7 @@ DicomFile severalFrames() {
 TEST(DicomValues, FramesWithPlacesAndSlopesOfTheirOwn) {
     const TempFolder folder;
     const Volume volume = readFile(severalFrames());
-    EXPECT_EQ(volume.worldFromIndex,
+    EXPECT_EQ(volume.worldFromIndex(),
               glm::dmat4(0.25, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 2, 0, 10, 20, 30, 1));
     EXPECT_EQ(valuesOf(volume),
               (std::vector<double>{1, 11, 21, 31, 41, 51, 601, 701, 801, 901, 1001, 1101}));
@@ -579,7 +579,7 @@ TEST(DicomValues, FramesWithPlacesAndSlopesOfTheirOwn) {
     packed.syntax = "1.2.840.10008.1.2.4.90";
     packed.fragments = {wavelets(false), wavelets(false)};
     const Volume unpacked = readFile(packed);
-    EXPECT_EQ(unpacked.box.dims(), glm::ivec3(4, 4, 2));
+    EXPECT_EQ(unpacked.box().dims(), glm::ivec3(4, 4, 2));
     EXPECT_EQ(valueAt(unpacked, 3, 0, 0), 31);
     EXPECT_EQ(valueAt(unpacked, 3, 0, 1), 301);
 }

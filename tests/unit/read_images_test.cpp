@@ -57,26 +57,26 @@ TEST(ReadImages, PagesOfATiff) {
     for (const std::string compression : {"none", "lzw", "zip"}) {
         writePages<std::uint16_t>("a.tif", 11, compression);
         const Volume volume = readVolume("a.tif");
-        EXPECT_EQ(volume.name, "a");
-        EXPECT_EQ(volume.type, "uint16");
-        EXPECT_EQ(volume.space, "");
-        EXPECT_EQ(volume.box.dims(), glm::ivec3(4, 3, 11));
+        EXPECT_EQ(volume.name(), "a");
+        EXPECT_EQ(volume.type(), "uint16");
+        EXPECT_EQ(volume.space(), "");
+        EXPECT_EQ(volume.box().dims(), glm::ivec3(4, 3, 11));
         EXPECT_EQ(valuesOf(volume), ramp<double>(132));
-        EXPECT_EQ(volume.worldFromIndex, glm::dmat4(1));
+        EXPECT_EQ(volume.worldFromIndex(), glm::dmat4(1));
     }
 }
 
 TEST(ReadImages, TypesOfTiff) {
     const TempFolder folder;
     writePages<std::uint8_t>("a.tiff", 2);
-    EXPECT_EQ(readVolume("a.tiff").type, "uint8");
+    EXPECT_EQ(readVolume("a.tiff").type(), "uint8");
     writePages<std::int16_t>("b.tiff", 2);
-    EXPECT_EQ(readVolume("b.tiff").type, "int16");
+    EXPECT_EQ(readVolume("b.tiff").type(), "int16");
     writePages<float>("c.tiff", 2);
-    EXPECT_EQ(readVolume("c.tiff").type, "float32");
+    EXPECT_EQ(readVolume("c.tiff").type(), "float32");
     EXPECT_EQ(valuesOf(readVolume("c.tiff")), ramp<double>(24));
     writePages<double>("d.tiff", 2);
-    EXPECT_EQ(readVolume("d.tiff").type, "float64");
+    EXPECT_EQ(readVolume("d.tiff").type(), "float64");
 }
 
 // OpenImageIO would turn those of 8 bits round, and no others.
@@ -151,11 +151,11 @@ TEST(ReadImages, StackByPattern) {
     writeStack({"s/other.0001.png", "s/slice.10.png", "s/slice.001x.png"});
     for (const std::string name : {"s/slice.####.png", "s/slice.%04d.png", "./s/slice.####.png"}) {
         const Volume volume = readVolume(name);
-        EXPECT_EQ(volume.name, "slice");
-        EXPECT_EQ(volume.box.dims(), glm::ivec3(4, 3, 3));
+        EXPECT_EQ(volume.name(), "slice");
+        EXPECT_EQ(volume.box().dims(), glm::ivec3(4, 3, 3));
         EXPECT_EQ(valuesOf(volume), ramp<double>(36));
     }
-    EXPECT_EQ(readVolume("s/slice.##.png").box.dims(), glm::ivec3(4, 3, 1));
+    EXPECT_EQ(readVolume("s/slice.##.png").box().dims(), glm::ivec3(4, 3, 1));
 }
 
 TEST(ReadImages, StackOfNumbersWithoutZeros) {
@@ -171,8 +171,8 @@ TEST(ReadImages, SignsThatAreNoNumbers) {
     const TempFolder folder;
     writeStack({"a#.1.png", "a#.2.png", "b%d#c1.png", "b%d#c2.png", "c#.png", "c1.png", "c2.png"});
     EXPECT_EQ(valuesOf(readVolume("a\\#.#.png")), ramp<double>(24));
-    EXPECT_EQ(readVolume("b\\%d\\#c%d.png").box.dims(), glm::ivec3(4, 3, 2));
-    EXPECT_EQ(readVolume("c#.png").box.dims(), glm::ivec3(4, 3, 1));
+    EXPECT_EQ(readVolume("b\\%d\\#c%d.png").box().dims(), glm::ivec3(4, 3, 2));
+    EXPECT_EQ(readVolume("c#.png").box().dims(), glm::ivec3(4, 3, 1));
 }
 
 TEST(ReadImages, EverySecondNumber) {
@@ -184,7 +184,7 @@ TEST(ReadImages, EverySecondNumber) {
 TEST(ReadImages, OneFileIsOnePicture) {
     const TempFolder folder;
     writeStack({"a.0001.png", "a.0002.png"});
-    EXPECT_EQ(readVolume("a.0001.png").box.dims(), glm::ivec3(4, 3, 1));
+    EXPECT_EQ(readVolume("a.0001.png").box().dims(), glm::ivec3(4, 3, 1));
 }
 
 TEST(ReadImages, Folder) {
@@ -194,7 +194,7 @@ TEST(ReadImages, Folder) {
     writeBytes("stack/notes.txt", "text");
     Warnings warnings;
     const Volume volume = readVolume("stack", {}, warnings.listener());
-    EXPECT_EQ(volume.name, "stack");
+    EXPECT_EQ(volume.name(), "stack");
     EXPECT_EQ(valuesOf(volume), ramp<double>(36));
     EXPECT_EQ(warnings.lines,
               std::vector<std::string>{"stack: 1 file that is no image is passed over, notes.txt"});
@@ -206,7 +206,7 @@ TEST(ReadImages, SpacingAndOrigin) {
     ReadOptions options;
     options.raw.spacing = {2, 3, 4};
     options.raw.origin = {10, 20, 30};
-    EXPECT_EQ(readVolume("a.#.png", options).worldFromIndex,
+    EXPECT_EQ(readVolume("a.#.png", options).worldFromIndex(),
               glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1));
     options.raw.spacing->y = 0;
     expectError(ErrorCode::kUsage, "`spacing`: got 0; expected three numbers from 1e-15 to 1e+15",
@@ -225,7 +225,7 @@ TEST(ReadImages, ColoursBecomeLuminance) {
     writeImage("a.2.png", ImageSpec(4, 3, 3, TypeDesc::UINT16), colors);
     Warnings warnings;
     const Volume volume = readVolume("a.#.png", {}, warnings.listener());
-    EXPECT_EQ(volume.type, "uint16");
+    EXPECT_EQ(volume.type(), "uint16");
     for (int i = 0; i < 12; ++i) {
         const double sum = 0.2126 * 1000 * i + 0.7152 * 500 + 0.0722 * 7;
         EXPECT_NEAR(valueAt(volume, i % 4, i / 4, 0), sum, 0.5);
@@ -274,8 +274,8 @@ TEST(ReadImages, SlicesThatPackWell) {
         if (file == "a.tif") spec.attribute("compression", "zip");
         writeImage(file, spec, black);
         const Volume volume = readVolume(file);
-        EXPECT_EQ(volume.box.dims(), glm::ivec3(512, 512, 1));
-        EXPECT_EQ(volume.valueMax, 0);
+        EXPECT_EQ(volume.box().dims(), glm::ivec3(512, 512, 1));
+        EXPECT_EQ(volume.valueMax(), 0);
     }
 }
 

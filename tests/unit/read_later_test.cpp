@@ -78,7 +78,7 @@ std::string writeValues(const std::string& type, bool bigEndian = false) {
 
 std::size_t countUnread(const Volume& volume) {
     std::size_t unread = 0;
-    for (const CodeLeaf& one : *volume.codes->leaves())
+    for (const CodeLeaf& one : *volume.codes()->leaves())
         unread += one.leaf->buffer().empty() ? 1 : 0;
     return unread;
 }
@@ -96,9 +96,9 @@ void isTheSameVolume(const std::string& type) {
         SCOPED_TRACE(type + (bigEndian ? " big-endian" : ""));
         const std::string file = writeValues<T>(type, bigEndian);
         const Volume volume = readVolume(file, later());
-        EXPECT_TRUE(volume.codes->lacksLeaves());
+        EXPECT_TRUE(volume.codes()->lacksLeaves());
         expectSameVolume(volume, readVolume(file));
-        EXPECT_FALSE(volume.codes->lacksLeaves());
+        EXPECT_FALSE(volume.codes()->lacksLeaves());
     }
 }
 
@@ -115,15 +115,15 @@ TEST(ReadLater, onlyWhatIsAskedForIsRead) {
     const std::string file = writeValues<std::uint8_t>("uint8");
     const Volume whole = readVolume(file);
     const Volume volume = readVolume(file, later());
-    const std::size_t all = volume.codes->leaves()->size();
+    const std::size_t all = volume.codes()->leaves()->size();
     // Rows with few leaves are read while they are at hand.
     const std::size_t unread = countUnread(volume);
     EXPECT_GT(unread, all / 2);
     EXPECT_LT(unread, all);
     for (const int axis : {0, 1, 2}) {
         const std::vector<Slot> map = codesFrom(axis == 1 ? 80 : 100);
-        const std::vector<CodeBlock> blocks = listBlocks(*volume.codes, axis, map);
-        const std::vector<CodeBlock> expected = listBlocks(*whole.codes, axis, map);
+        const std::vector<CodeBlock> blocks = listBlocks(*volume.codes(), axis, map);
+        const std::vector<CodeBlock> expected = listBlocks(*whole.codes(), axis, map);
         ASSERT_EQ(blocks.size(), expected.size());
         for (std::size_t i = 0; i < blocks.size(); ++i) {
             ASSERT_EQ(blocks[i].position, expected[i].position);
@@ -152,9 +152,9 @@ void readsWhatIsWanted(const std::string& type) {
         return value >= 85;
     };
     const Volume volume = readVolume(file, options);
-    const Code least = volume.codeBook.codeOf(85);
+    const Code least = volume.codeBook().codeOf(85);
     std::size_t wanted = 0;
-    for (const CodeLeaf& one : *volume.codes->leaves()) {
+    for (const CodeLeaf& one : *volume.codes()->leaves()) {
         if (one.highest < least) continue;
         ++wanted;
         EXPECT_FALSE(one.leaf->buffer().empty()) << one.leaf->origin();
@@ -213,8 +213,9 @@ TEST(ReadLater, manyThreadsAskAtOnce) {
     std::vector<std::thread> threads;
     for (int i = 0; i < 8; ++i) {
         threads.emplace_back([&, i] {
-            if (i % 4 == 3) return void(volume.codes->tree());
-            for (const CodeBlock& block : listBlocks(*volume.codes, i % 3, codesFrom(130 - 15 * i)))
+            if (i % 4 == 3) return void(volume.codes()->tree());
+            for (const CodeBlock& block :
+                 listBlocks(*volume.codes(), i % 3, codesFrom(130 - 15 * i)))
                 EXPECT_FALSE(block.leaf && block.leaf->buffer().empty());
         });
     }
@@ -244,12 +245,13 @@ TEST(ReadLater, aFileThatChangesIsRefused) {
         file, std::filesystem::last_write_time(file) + std::chrono::seconds(1));
     const std::size_t unread = countUnread(volume);
     for (int i = 0; i < 2; ++i) {
-        expectError(ErrorCode::kInput, message, [&] { volume.codes->tree(); });
+        expectError(ErrorCode::kInput, message, [&] { volume.codes()->tree(); });
         EXPECT_EQ(countUnread(volume), unread);
     }
     const Volume shorter = readVolume(file, later());
     std::filesystem::resize_file(file, 1000);
-    expectError(ErrorCode::kInput, message, [&] { listBlocks(*shorter.codes, 2, codesFrom(100)); });
+    expectError(ErrorCode::kInput, message,
+                [&] { listBlocks(*shorter.codes(), 2, codesFrom(100)); });
 }
 
 TEST(ReadLater, memoryIsAskedForBeforeItIsTaken) {
@@ -258,7 +260,7 @@ TEST(ReadLater, memoryIsAskedForBeforeItIsTaken) {
     const Volume volume = readVolume(file, later());
     setMemoryLimit(1);
     try {
-        volume.codes->tree();
+        volume.codes()->tree();
         ADD_FAILURE() << "no error";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::kFailed);
@@ -274,12 +276,12 @@ TEST(ReadLater, behindHeaders) {
     ReadOptions options = later();
     options.raw.skipBytes = 37;
     const Volume volume = readVolume("v_203x45x35_int16.raw", options);
-    EXPECT_TRUE(volume.codes->lacksLeaves());
+    EXPECT_TRUE(volume.codes()->lacksLeaves());
     writeBytes("v_203x45x35_int16.raw", bytes);
     expectError(ErrorCode::kInput,
                 "v_203x45x35_int16.raw: got a file that was written to while it was read; "
                 "expected one that stays as it is",
-                [&] { volume.codes->tree(); });
+                [&] { volume.codes()->tree(); });
     expectSameVolume(readVolume("v_203x45x35_int16.raw", later()),
                      readVolume("v_203x45x35_int16.raw"));
 }
@@ -289,14 +291,14 @@ TEST(ReadLater, othersAreReadAtOnce) {
     std::vector<float> values(16 * 16 * 16);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = float(i) / 7;
     writeBytes("v_16x16x16_float32.raw", bytesOf(values));
-    EXPECT_FALSE(readVolume("v_16x16x16_float32.raw", later()).codes->lacksLeaves());
+    EXPECT_FALSE(readVolume("v_16x16x16_float32.raw", later()).codes()->lacksLeaves());
     const std::string file = writeValues<std::uint8_t>("uint8");
     testing::writeGzip(file + ".gz", bytesOf(makeValues<std::uint8_t>()));
     const Volume zipped = readVolume(file + ".gz", later());
-    EXPECT_FALSE(zipped.codes->lacksLeaves());
+    EXPECT_FALSE(zipped.codes()->lacksLeaves());
     ReadOptions keeping = later();
     keeping.keepSource = true;
-    EXPECT_FALSE(readVolume(file, keeping).codes->lacksLeaves());
+    EXPECT_FALSE(readVolume(file, keeping).codes()->lacksLeaves());
     expectSameVolume(readVolume(file, later()), readVolume(file));
 }
 
@@ -341,7 +343,7 @@ std::string writeLarge(bool isSparse = false) {
 }
 
 const SlotBlocks& blocksOf(const Volume& volume) {
-    return *volume.codes->blocksAlong(volume.origin->sliceAxis);
+    return *volume.codes()->blocksAlong(volume.origin()->sliceAxis);
 }
 
 std::size_t countMade(const Volume& volume) {
@@ -349,9 +351,9 @@ std::size_t countMade(const Volume& volume) {
 }
 
 void expectSameBlocks(const Volume& a, const Volume& b, int least) {
-    const int axis = a.origin->sliceAxis;
-    const std::vector<CodeBlock> blocks = listBlocks(*a.codes, axis, codesFrom(least));
-    const std::vector<CodeBlock> expected = listBlocks(*b.codes, axis, codesFrom(least));
+    const int axis = a.origin()->sliceAxis;
+    const std::vector<CodeBlock> blocks = listBlocks(*a.codes(), axis, codesFrom(least));
+    const std::vector<CodeBlock> expected = listBlocks(*b.codes(), axis, codesFrom(least));
     ASSERT_EQ(blocks.size(), expected.size());
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         ASSERT_EQ(blocks[i].position, expected[i].position);
@@ -376,14 +378,14 @@ TEST(ReadLater, columnsOfPackedDeltasAreUnpackedWhenTheirCodesAreAskedFor) {
                 const Volume whole = readVolume(kPacked);
                 test::expectSameFacts(volume, whole);
                 EXPECT_EQ(countMade(volume), 0u);
-                expectSameBlocks(volume, whole, volume.codeBook.codeOf(200));
+                expectSameBlocks(volume, whole, volume.codeBook().codeOf(200));
                 const std::size_t few = countMade(volume);
                 EXPECT_GT(few, 0u);
                 // Of their columns no others are kept.
                 const auto seen =
-                    listBlocks(*whole.codes, axis, codesFrom(volume.codeBook.codeOf(200)));
+                    listBlocks(*whole.codes(), axis, codesFrom(volume.codeBook().codeOf(200)));
                 EXPECT_EQ(few, seen.size());
-                expectSameBlocks(volume, whole, volume.codeBook.codeOf(170));
+                expectSameBlocks(volume, whole, volume.codeBook().codeOf(170));
                 EXPECT_GT(countMade(volume), few);
                 EXPECT_LT(countMade(volume), blocksOf(whole).blocks().size());
                 expectSameBlocks(volume, whole, 0);
@@ -435,7 +437,7 @@ TEST(ReadLater, manyThreadsAskForColumnsAtOnce) {
     std::vector<std::thread> threads;
     for (int i = 0; i < 8; ++i) {
         threads.emplace_back([&, i] {
-            if (i % 4 == 3) return void(volume.codes->tree());
+            if (i % 4 == 3) return void(volume.codes()->tree());
             expectSameBlocks(volume, whole, 190 - 20 * i);
         });
     }
@@ -472,8 +474,8 @@ TEST(ReadLater, damagedColumnsAreRefusedWhenTheyAreAskedFor) {
     const Volume whole = readVolume(kPacked);
     expectSameBlocks(volume, whole, 100);
     for (int i = 0; i < 2; ++i) {
-        EXPECT_EQ(codeOf([&] { listBlocks(*volume.codes, 2, codesFrom(0)); }), ErrorCode::kInput);
-        EXPECT_EQ(codeOf([&] { volume.codes->tree(); }), ErrorCode::kInput);
+        EXPECT_EQ(codeOf([&] { listBlocks(*volume.codes(), 2, codesFrom(0)); }), ErrorCode::kInput);
+        EXPECT_EQ(codeOf([&] { volume.codes()->tree(); }), ErrorCode::kInput);
     }
     expectSameBlocks(volume, whole, 100);
 }
@@ -483,7 +485,7 @@ TEST(ReadLater, memoryForColumnsIsAskedForBeforeItIsTaken) {
     const Volume volume = packedLater(writeLarge(), 2);
     setMemoryLimit(1);
     try {
-        volume.codes->tree();
+        volume.codes()->tree();
         ADD_FAILURE() << "no error";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::kFailed);

@@ -49,10 +49,11 @@ std::string packed(const std::string& bytes) {
 }
 
 void expectSample(const Volume& volume) {
-    EXPECT_EQ(volume.type, "uint16");
-    EXPECT_EQ(volume.space, "");
-    EXPECT_EQ(volume.box.dims(), glm::ivec3(4, 3, 2));
-    EXPECT_EQ(volume.worldFromIndex, glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1));
+    EXPECT_EQ(volume.type(), "uint16");
+    EXPECT_EQ(volume.space(), "");
+    EXPECT_EQ(volume.box().dims(), glm::ivec3(4, 3, 2));
+    EXPECT_EQ(volume.worldFromIndex(),
+              glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1));
     EXPECT_EQ(valuesOf(volume), kRamp);
 }
 
@@ -66,7 +67,7 @@ TEST(ReadMeta, LocalAndDetached) {
     meta.dataFile = "values.raw";
     writeBytes("sub/b.mhd", meta.text());
     const Volume volume = readVolume("sub/b.mhd");
-    EXPECT_EQ(volume.name, "b");
+    EXPECT_EQ(volume.name(), "b");
     expectSample(volume);
     for (const auto& [size, bytes] : {std::pair{"5", "12345" + data()}, {"-1", "abc" + data()}}) {
         writeBytes("sub/values.raw", bytes);
@@ -112,7 +113,7 @@ void expectType(const std::string& metaName, const std::string& name) {
         meta.msb = bigEndian ? "True" : "False";
         writeBytes("a.mha", meta.text() + bytesOf(ramp<T>(24, 2, 3), bigEndian));
         const Volume volume = readVolume("a.mha");
-        EXPECT_EQ(volume.type, name);
+        EXPECT_EQ(volume.type(), name);
         EXPECT_EQ(valuesOf(volume), ramp<double>(24, 2, 3)) << name;
     }
 }
@@ -136,7 +137,7 @@ TEST(ReadMeta, Directions) {
     Meta meta;
     meta.matrix = "0 1 0 -1 0 0 0 0 -1";
     writeBytes("a.mha", meta.text() + data());
-    EXPECT_EQ(readVolume("a.mha").worldFromIndex,
+    EXPECT_EQ(readVolume("a.mha").worldFromIndex(),
               glm::dmat4(0, 2, 0, 0, -3, 0, 0, 0, 0, 0, -4, 0, 10, 20, 30, 1));
 }
 
@@ -161,7 +162,7 @@ TEST(ReadMeta, TwoAndFourAxes) {
     meta.spacing = "2 3";
     meta.sizes = "4 6";
     writeBytes("a.mha", meta.text() + data());
-    EXPECT_EQ(readVolume("a.mha").box.dims(), glm::ivec3(4, 6, 1));
+    EXPECT_EQ(readVolume("a.mha").box().dims(), glm::ivec3(4, 6, 1));
     EXPECT_EQ(valuesOf(readVolume("a.mha")), kRamp);
     meta.axes = 4;
     meta.matrix = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1";
@@ -205,8 +206,8 @@ TEST(ReadMeta, SeveralVolumes) {
         for (const int chosen : {0, 1, 5}) {
             options.volume = chosen;
             const Volume volume = readVolume(file, options);
-            EXPECT_EQ(volume.box.dims(), glm::ivec3(4, 3, 2));
-            EXPECT_EQ(volume.worldFromIndex,
+            EXPECT_EQ(volume.box().dims(), glm::ivec3(4, 3, 2));
+            EXPECT_EQ(volume.worldFromIndex(),
                       glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1));
             EXPECT_EQ(valuesOf(volume), ramp<double>(24, 24 * chosen));
         }
@@ -352,11 +353,11 @@ TEST(ReadMeta, Units) {
                         (patient ? "AnatomicalOrientation = RAI\n" : "");
             writeBytes("a.mha", meta.text() + data());
             const Volume volume = readVolume("a.mha");
-            EXPECT_EQ(volume.lengthUnit, patient && *unit != '\0' ? "mm" : unit);
+            EXPECT_EQ(volume.lengthUnit(), patient && *unit != '\0' ? "mm" : unit);
             for (int axis = 0; axis < 3; ++axis) {
                 const double scale = patient ? factor : 1;
                 EXPECT_DOUBLE_EQ(volume.voxelSize()[axis], scale * size[axis]) << said;
-                EXPECT_DOUBLE_EQ(volume.worldFromIndex[3][axis], scale * place[axis]) << said;
+                EXPECT_DOUBLE_EQ(volume.worldFromIndex()[3][axis], scale * place[axis]) << said;
             }
         }
     }
@@ -379,9 +380,9 @@ TEST(ReadMeta, Orientation) {
         writeBytes("a.mha", meta.text() + data());
         Warnings warnings;
         const Volume volume = readVolume("a.mha", {}, warnings.listener());
-        EXPECT_EQ(volume.space, space) << text;
+        EXPECT_EQ(volume.space(), space) << text;
         EXPECT_EQ(warnings.lines.size(), warned ? 1u : 0u) << text;
-        EXPECT_EQ(volume.worldFromIndex[0].x, 2);
+        EXPECT_EQ(volume.worldFromIndex()[0].x, 2);
     }
     // As it is written: i goes back, j to the right, k down.
     Meta meta;
@@ -389,7 +390,7 @@ TEST(ReadMeta, Orientation) {
     meta.more = "AnatomicalOrientation = ALS\n";
     writeBytes("b.mha", meta.text() + data());
     Warnings warnings;
-    EXPECT_EQ(readVolume("b.mha", {}, warnings.listener()).space, "LPS");
+    EXPECT_EQ(readVolume("b.mha", {}, warnings.listener()).space(), "LPS");
     EXPECT_EQ(warnings.lines, std::vector<std::string>());
 }
 

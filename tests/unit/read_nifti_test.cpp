@@ -36,12 +36,12 @@ TEST(ReadNifti, BothVersionsAndByteOrders) {
             SCOPED_TRACE(version + (bigEndian ? 0.5 : 0));
             Warnings warnings;
             const Volume volume = read(sample(version, bigEndian), warnings.listener());
-            EXPECT_EQ(volume.name, "a");
-            EXPECT_EQ(volume.type, "int16");
-            EXPECT_EQ(volume.space, "RAS");
-            EXPECT_EQ(volume.box.dims(), glm::ivec3(4, 3, 2));
+            EXPECT_EQ(volume.name(), "a");
+            EXPECT_EQ(volume.type(), "int16");
+            EXPECT_EQ(volume.space(), "RAS");
+            EXPECT_EQ(volume.box().dims(), glm::ivec3(4, 3, 2));
             EXPECT_EQ(valuesOf(volume), kRamp);
-            EXPECT_EQ(volume.worldFromIndex,
+            EXPECT_EQ(volume.worldFromIndex(),
                       glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1));
             EXPECT_TRUE(warnings.lines.empty());
         }
@@ -52,7 +52,7 @@ TEST(ReadNifti, Gzip) {
     const TempFolder folder;
     writeGzip("b.nii.gz", sample(2, true).bytes());
     const Volume volume = readVolume("b.nii.gz");
-    EXPECT_EQ(volume.name, "b");
+    EXPECT_EQ(volume.name(), "b");
     EXPECT_EQ(valuesOf(volume), kRamp);
 }
 
@@ -64,9 +64,9 @@ void expectType(int code, const std::string& name) {
         file.bits = 8 * sizeof(T);
         file.data = bytesOf(ramp<T>(24, 3, 4), bigEndian);
         const Volume volume = read(file);
-        EXPECT_EQ(volume.type, name);
+        EXPECT_EQ(volume.type(), name);
         EXPECT_EQ(valuesOf(volume), ramp<double>(24, 3, 4)) << name;
-        EXPECT_TRUE(volume.codeBook.isExact());
+        EXPECT_TRUE(volume.codeBook().isExact());
     }
 }
 
@@ -92,8 +92,8 @@ TEST(ReadNifti, WholeNumbersBeyondDoubles) {
     values[5] = ~std::uint64_t{0};
     file.data = bytesOf(values);
     const Volume volume = read(file);
-    EXPECT_EQ(volume.valueMin, 1);
-    EXPECT_NEAR(volume.valueMax, 0x1p64, 0x1p49);
+    EXPECT_EQ(volume.valueMin(), 1);
+    EXPECT_NEAR(volume.valueMax(), 0x1p64, 0x1p49);
 }
 
 TEST(ReadNifti, SlopeAndIntercept) {
@@ -104,7 +104,7 @@ TEST(ReadNifti, SlopeAndIntercept) {
             file.slope = 0.5;
             file.intercept = -3;
             const Volume volume = read(file);
-            EXPECT_EQ(volume.type, "float32");
+            EXPECT_EQ(volume.type(), "float32");
             EXPECT_EQ(valuesOf(volume), ramp<double>(24, -5.5, 0.5));
         }
     }
@@ -115,7 +115,7 @@ TEST(ReadNifti, SlopeAndIntercept) {
     file.slope = 2;
     file.intercept = 1;
     const Volume volume = read(file);
-    EXPECT_EQ(volume.type, "float64");
+    EXPECT_EQ(volume.type(), "float64");
     EXPECT_EQ(valuesOf(volume), ramp<double>(24, 2147483649.0, 2));
 }
 
@@ -127,7 +127,7 @@ TEST(ReadNifti, ASlopeThatIsNoneKeepsIntegers) {
         file.slope = slope;
         file.intercept = intercept;
         const Volume volume = read(file);
-        EXPECT_EQ(volume.type, "int16");
+        EXPECT_EQ(volume.type(), "int16");
         EXPECT_EQ(valuesOf(volume), kRamp);
     }
 }
@@ -148,8 +148,8 @@ TEST(ReadNifti, QformTurnsAndMirrors) {
         file.quaternion = {0, 0, std::sqrt(0.5), 7, 8, 9};
         file.pixelSizes[0] = -1;
         const Volume volume = read(file);
-        EXPECT_EQ(volume.space, "RAS");
-        expectNear(volume.worldFromIndex,
+        EXPECT_EQ(volume.space(), "RAS");
+        expectNear(volume.worldFromIndex(),
                    glm::dmat4(0, 2, 0, 0, -3, 0, 0, 0, 0, 0, -4, 0, 7, 8, 9, 1));
     }
 }
@@ -158,7 +158,7 @@ TEST(ReadNifti, ShearedSformIsKept) {
     const TempFolder folder;
     NiftiFile file = sample();
     file.sform = {2, 0.5, 0, 10, 0, 3, 0.25, 20, 0, 0, 4, 30};
-    EXPECT_EQ(read(file).worldFromIndex,
+    EXPECT_EQ(read(file).worldFromIndex(),
               glm::dmat4(2, 0, 0, 0, 0.5, 3, 0, 0, 0, 0.25, 4, 0, 10, 20, 30, 1));
 }
 
@@ -172,7 +172,7 @@ TEST(ReadNifti, SformWinsOverAQformThatDiffers) {
     EXPECT_TRUE(same.lines.empty());
     file.quaternion = {0, 0, 0, 10, 20, 50};
     Warnings other;
-    EXPECT_EQ(read(file, other.listener()).worldFromIndex[3].z, 30);
+    EXPECT_EQ(read(file, other.listener()).worldFromIndex()[3].z, 30);
     EXPECT_EQ(other.lines,
               std::vector<std::string>{"a.nii: sform and qform differ; the sform is taken"});
 }
@@ -183,8 +183,8 @@ TEST(ReadNifti, WithoutQformAndSform) {
     file.sformCode = 0;
     Warnings warnings;
     const Volume volume = read(file, warnings.listener());
-    EXPECT_EQ(volume.space, "");
-    EXPECT_EQ(volume.worldFromIndex, glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 0, 0, 0, 1));
+    EXPECT_EQ(volume.space(), "");
+    EXPECT_EQ(volume.worldFromIndex(), glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 0, 0, 0, 1));
     EXPECT_EQ(warnings.lines,
               std::vector<std::string>{"a.nii: neither sform nor qform: only the voxel size is "
                                        "known, not where the volume lies or which side is left"});
@@ -201,7 +201,7 @@ TEST(ReadNifti, SizesBelowZero) {
         const Volume plain = read(file);
         file.pixelSizes = {1, -2, 3, -4, 1, 1, 1, 1};
         Warnings warnings;
-        EXPECT_EQ(read(file, warnings.listener()).worldFromIndex, plain.worldFromIndex);
+        EXPECT_EQ(read(file, warnings.listener()).worldFromIndex(), plain.worldFromIndex());
         EXPECT_EQ(warnings.lines.front(),
                   "a.nii: a voxel size below 0 is taken as if it were positive");
     }
@@ -223,17 +223,17 @@ TEST(ReadNifti, Units) {
                 writeBytes("a.nii", file.bytes());
                 Warnings warnings;
                 const Volume volume = readVolume("a.nii", {}, warnings.listener());
-                EXPECT_EQ(volume.lengthUnit, code == 0 ? "" : "mm");
+                EXPECT_EQ(volume.lengthUnit(), code == 0 ? "" : "mm");
                 const glm::dmat4 world(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1);
                 for (int i = 0; i < 16; ++i) {
                     const double wanted = i == 15 ? 1 : factor * world[i / 4][i % 4];
-                    EXPECT_DOUBLE_EQ(volume.worldFromIndex[i / 4][i % 4], wanted) << unit;
+                    EXPECT_DOUBLE_EQ(volume.worldFromIndex()[i / 4][i % 4], wanted) << unit;
                 }
                 EXPECT_EQ(warnings.lines, line.empty() ? std::vector<std::string>()
                                                        : std::vector<std::string>{line});
                 file.sformCode = 0;
                 writeBytes("b.nii", file.bytes());
-                EXPECT_EQ(readVolume("b.nii").lengthUnit, unit);
+                EXPECT_EQ(readVolume("b.nii").lengthUnit(), unit);
                 EXPECT_EQ(readVolume("b.nii").voxelSize(), glm::dvec3(2, 3, 4));
             }
         }
@@ -260,14 +260,14 @@ TEST(ReadNifti, FormsWithoutPlaces) {
         file.qformCode = 1;
         file.quaternion = {0, 0, 0, 7, 8, 9};
         auto [volume, lines] = warned(file);
-        EXPECT_EQ(volume.space, "RAS");
-        EXPECT_EQ(volume.worldFromIndex,
+        EXPECT_EQ(volume.space(), "RAS");
+        EXPECT_EQ(volume.worldFromIndex(),
                   glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 7, 8, 9, 1));
         EXPECT_EQ(lines, std::vector<std::string>{
                              "a.nii: the sform gives voxels no place; the qform is taken"});
         file.qformCode = 0;
         std::tie(volume, lines) = warned(file);
-        EXPECT_EQ(volume.space, "");
+        EXPECT_EQ(volume.space(), "");
         EXPECT_EQ(volume.voxelSize(), glm::dvec3(2, 3, 4));
         EXPECT_EQ(lines,
                   (std::vector<std::string>{
@@ -278,7 +278,7 @@ TEST(ReadNifti, FormsWithoutPlaces) {
     file.qformCode = 1;
     file.quaternion[1] = INFINITY;
     const auto [volume, lines] = warned(file);
-    EXPECT_EQ(volume.space, "");
+    EXPECT_EQ(volume.space(), "");
     EXPECT_EQ(volume.voxelSize(), glm::dvec3(2, 3, 4));
     EXPECT_EQ(lines,
               (std::vector<std::string>{
@@ -293,7 +293,7 @@ TEST(ReadNifti, ZerosAreOnes) {
          {std::vector<int>{4, 6, 0}, {4, 6, 0, 0}, {4, 6, 1, 0, 0}}) {
         file.dims = dims;
         writeBytes("a.nii", file.bytes());
-        EXPECT_EQ(readVolume("a.nii").box.dims(), glm::ivec3(4, 6, 1));
+        EXPECT_EQ(readVolume("a.nii").box().dims(), glm::ivec3(4, 6, 1));
     }
     // One slice, whose header leaves out what lies across it.
     for (const auto& [dims, thickness, wanted] : {std::tuple{std::vector<int>{4, 6}, 0.0, 1.0},
@@ -310,10 +310,10 @@ TEST(ReadNifti, ZerosAreOnes) {
             Warnings warnings;
             const Volume volume = readVolume("b.nii", {}, warnings.listener());
             EXPECT_EQ(volume.voxelSize(), glm::dvec3(0.5, 0.25, wanted));
-            EXPECT_EQ(volume.space, "RAS");
+            EXPECT_EQ(volume.space(), "RAS");
             EXPECT_EQ(warnings.lines, std::vector<std::string>());
             if (!bySform) continue;
-            EXPECT_EQ(glm::dvec3(volume.worldFromIndex[2]), glm::dvec3(wanted, 0, 0));
+            EXPECT_EQ(glm::dvec3(volume.worldFromIndex()[2]), glm::dvec3(wanted, 0, 0));
         }
     }
 }
@@ -338,9 +338,9 @@ TEST(ReadNifti, Pairs) {
         for (const char* const name :
              {"a.hdr", "a.img", "b.hdr.gz", "b.img.gz", "C.HDR", "C.IMG"}) {
             const Volume volume = readVolume(name);
-            EXPECT_EQ(volume.name, std::string(1, name[0])) << name;
+            EXPECT_EQ(volume.name(), std::string(1, name[0])) << name;
             EXPECT_EQ(valuesOf(volume), kRamp) << name;
-            EXPECT_EQ(volume.space, "RAS");
+            EXPECT_EQ(volume.space(), "RAS");
         }
     }
     // The file that is named, and no other of the same name.
@@ -364,9 +364,9 @@ TEST(ReadNifti, OneTwoAndFourDimensions) {
     const TempFolder folder;
     NiftiFile file = sample();
     file.dims = {24};
-    EXPECT_EQ(read(file).box.dims(), glm::ivec3(24, 1, 1));
+    EXPECT_EQ(read(file).box().dims(), glm::ivec3(24, 1, 1));
     file.dims = {4, 6};
-    EXPECT_EQ(read(file).box.dims(), glm::ivec3(4, 6, 1));
+    EXPECT_EQ(read(file).box().dims(), glm::ivec3(4, 6, 1));
     file.dims = {4, 3, 2, 1, 1};
     EXPECT_EQ(valuesOf(read(file)), kRamp);
 }
@@ -391,7 +391,7 @@ TEST(ReadNifti, VolumesAreChosen) {
                 for (int volume = 0; volume < 6; ++volume) {
                     options.volume = volume;
                     const Volume got = readVolume(name, options);
-                    EXPECT_EQ(got.box.dims(), glm::ivec3(4, 3, 2));
+                    EXPECT_EQ(got.box().dims(), glm::ivec3(4, 3, 2));
                     EXPECT_EQ(valuesOf(got), ramp<double>(24, 1 + 12 * volume, 0.5));
                 }
             }
@@ -440,7 +440,7 @@ TEST(ReadNifti, OtherVolumesAreNotTouched) {
     ReadOptions options;
     options.volume = (1 << 20) - 1;
     setMemoryLimit(std::uint64_t{2} << 30);
-    EXPECT_EQ(readVolume("a.nii", options).valueMax, 1310);
+    EXPECT_EQ(readVolume("a.nii", options).valueMax(), 1310);
     setMemoryLimit(0);
 }
 

@@ -35,9 +35,9 @@ TEST(ReadNpy, LastIndexIsX) {
         writeBytes("a.npy",
                    npy(dictionary("<u2", "(2, 3, 4)"), bytesOf(ramp<std::uint16_t>(24)), version));
         const Volume volume = readVolume("a.npy");
-        EXPECT_EQ(volume.name, "a");
-        EXPECT_EQ(volume.type, "uint16");
-        EXPECT_EQ(volume.box.dims(), glm::ivec3(4, 3, 2));
+        EXPECT_EQ(volume.name(), "a");
+        EXPECT_EQ(volume.type(), "uint16");
+        EXPECT_EQ(volume.box().dims(), glm::ivec3(4, 3, 2));
         EXPECT_EQ(valuesOf(volume), ramp<double>(24));
     }
 }
@@ -49,7 +49,7 @@ TEST(ReadNpy, PackedByContent) {
     writeBytes("c.npy.gz", sample());
     for (const char* const name : {"a.npy.gz", "b.npy", "c.npy.gz"}) {
         EXPECT_EQ(valuesOf(readVolume(name)), ramp<double>(24)) << name;
-        EXPECT_EQ(readVolume(name).name, std::string(1, name[0]));
+        EXPECT_EQ(readVolume(name).name(), std::string(1, name[0]));
     }
     writeGzip("d.npy.gz", sample().substr(0, 20));
     expectRefused("d.npy.gz: got a header that is cut short; expected a whole one", "d.npy.gz");
@@ -60,7 +60,7 @@ TEST(ReadNpy, FirstIndexIsXInFortranOrder) {
     writeBytes("a.npy",
                npy(dictionary("<u2", "(4, 3, 2)", true), bytesOf(ramp<std::uint16_t>(24))));
     const Volume volume = readVolume("a.npy");
-    EXPECT_EQ(volume.box.dims(), glm::ivec3(4, 3, 2));
+    EXPECT_EQ(volume.box().dims(), glm::ivec3(4, 3, 2));
     EXPECT_EQ(valuesOf(volume), ramp<double>(24));
 }
 
@@ -68,7 +68,7 @@ template <typename T>
 void expectType(const std::string& name, const std::string& type, bool turned = false) {
     writeBytes("a.npy", npy(dictionary(name, "(2, 3, 4)"), bytesOf(ramp<T>(24), turned)));
     const Volume volume = readVolume("a.npy");
-    EXPECT_EQ(volume.type, type) << name;
+    EXPECT_EQ(volume.type(), type) << name;
     EXPECT_EQ(valuesOf(volume), ramp<double>(24)) << name;
 }
 
@@ -113,7 +113,7 @@ TEST(ReadNpy, SpacingAndOrigin) {
     ReadOptions options;
     options.raw.spacing = {2, 3, 4};
     options.raw.origin = {10, 20, 30};
-    EXPECT_EQ(readVolume("a.npy", options).worldFromIndex,
+    EXPECT_EQ(readVolume("a.npy", options).worldFromIndex(),
               glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1));
 }
 
@@ -140,7 +140,7 @@ TEST(ReadNpy, VolumesAreChosen) {
         for (int volume = 0; volume < 6; ++volume) {
             options.volume = volume;
             const Volume got = readVolume(name, options);
-            EXPECT_EQ(got.box.dims(), glm::ivec3(4, 3, 2));
+            EXPECT_EQ(got.box().dims(), glm::ivec3(4, 3, 2));
             EXPECT_EQ(valuesOf(got), ramp<double>(24, 24 * volume));
         }
     }
@@ -151,7 +151,7 @@ TEST(ReadNpy, VolumesAreChosen) {
         "b.npy", beyond);
     writeBytes("b.npy", npy(dictionary("<f2", "(2, 3)"), data.substr(0, 12)));
     beyond.volume = 0;
-    EXPECT_EQ(readVolume("b.npy", beyond).type, "float32");
+    EXPECT_EQ(readVolume("b.npy", beyond).type(), "float32");
 }
 
 TEST(ReadNpyError, VolumesBeyondTheData) {

@@ -46,10 +46,11 @@ std::string data(bool bigEndian = false) {
 }
 
 void expectSample(const Volume& volume) {
-    EXPECT_EQ(volume.type, "uint16");
-    EXPECT_EQ(volume.space, "LPS");
-    EXPECT_EQ(volume.box.dims(), glm::ivec3(4, 3, 2));
-    EXPECT_EQ(volume.worldFromIndex, glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1));
+    EXPECT_EQ(volume.type(), "uint16");
+    EXPECT_EQ(volume.space(), "LPS");
+    EXPECT_EQ(volume.box().dims(), glm::ivec3(4, 3, 2));
+    EXPECT_EQ(volume.worldFromIndex(),
+              glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1));
     EXPECT_EQ(valuesOf(volume), kRamp);
 }
 
@@ -57,7 +58,7 @@ TEST(ReadNrrd, Attached) {
     const TempFolder folder;
     writeBytes("a.nrrd", nrrd() + "\n" + data());
     const Volume volume = readVolume("a.nrrd");
-    EXPECT_EQ(volume.name, "a");
+    EXPECT_EQ(volume.name(), "a");
     expectSample(volume);
     writeBytes("b.NRRD", nrrd({{"endian", "big"}}) + "\n" + data(true));
     expectSample(readVolume("b.NRRD"));
@@ -99,7 +100,7 @@ void expectType(const std::string& nrrdName, const std::string& name) {
     const std::string header = nrrd({{"type", nrrdName}, {"endian", "big"}});
     writeBytes("a.nrrd", header + "\n" + bytesOf(ramp<T>(24, 2, 3), true));
     const Volume volume = readVolume("a.nrrd");
-    EXPECT_EQ(volume.type, name);
+    EXPECT_EQ(volume.type(), name);
     EXPECT_EQ(valuesOf(volume), ramp<double>(24, 2, 3)) << name;
 }
 
@@ -167,12 +168,12 @@ TEST(ReadNrrd, Spaces) {
         writeBytes("a.nrrd", nrrd(changes) + "\n" + data());
         Warnings warnings;
         const Volume volume = readVolume("a.nrrd", {}, warnings.listener());
-        EXPECT_EQ(volume.space, one.space);
+        EXPECT_EQ(volume.space(), one.space);
         EXPECT_EQ(valuesOf(volume), kRamp);
         const glm::dvec3 own = one.space == "RAS" ? glm::dvec3(-1, -1, 1) : glm::dvec3(1);
         for (int i = 0; i < 4; ++i) {
             for (int j = 0; j < 3; ++j)
-                EXPECT_NEAR(own[j] * volume.worldFromIndex[i][j], world[i][j], 1e-12);
+                EXPECT_NEAR(own[j] * volume.worldFromIndex()[i][j], world[i][j], 1e-12);
         }
         const bool turned = one.sign == las || one.sign.z < 0;
         EXPECT_EQ(warnings.lines.size(), turned ? 1u : 0u);
@@ -191,7 +192,7 @@ TEST(ReadNrrd, Spaces) {
     }
     // A dimension alone names no axes.
     writeBytes("a.nrrd", nrrd({{"space", ""}, {"space dimension", "3"}}) + "\n" + data());
-    EXPECT_EQ(readVolume("a.nrrd").space, "");
+    EXPECT_EQ(readVolume("a.nrrd").space(), "");
     EXPECT_EQ(readVolume("a.nrrd").voxelSize(), glm::dvec3(2, 3, 4));
 }
 
@@ -226,8 +227,8 @@ TEST(ReadNrrd, Units) {
                        nrrd({{"space", space}, {"space units", one.units}}) + "\n" + data());
             Warnings warnings;
             const Volume volume = readVolume("a.nrrd", {}, warnings.listener());
-            EXPECT_EQ(volume.lengthUnit, one.unit);
-            const glm::dvec3 size = volume.voxelSize(), place(volume.worldFromIndex[3]);
+            EXPECT_EQ(volume.lengthUnit(), one.unit);
+            const glm::dvec3 size = volume.voxelSize(), place(volume.worldFromIndex()[3]);
             for (int axis = 0; axis < 3; ++axis) {
                 EXPECT_DOUBLE_EQ(size[axis], one.scale[axis] * (axis + 2));
                 EXPECT_DOUBLE_EQ(place[axis], one.scale[axis] * 10 * (axis + 1));
@@ -242,14 +243,14 @@ TEST(ReadNrrd, Units) {
                                      {"spacings", "2 3 4"},
                                      {"units", "\"um\" \"um\" \"um\""}});
     writeBytes("b.nrrd", header + "\n" + data());
-    EXPECT_EQ(readVolume("b.nrrd").lengthUnit, "um");
+    EXPECT_EQ(readVolume("b.nrrd").lengthUnit(), "um");
     EXPECT_EQ(readVolume("b.nrrd").voxelSize(), glm::dvec3(2, 3, 4));
     // Without quotes, and of a space whose axes have no directions.
     writeBytes(
         "c.nrrd",
         nrrd({{"space directions", ""}, {"spacings", "2 3 4"}, {"space units", "um um um"}}) +
             "\n" + data());
-    EXPECT_EQ(readVolume("c.nrrd").lengthUnit, "mm");
+    EXPECT_EQ(readVolume("c.nrrd").lengthUnit(), "mm");
     EXPECT_DOUBLE_EQ(readVolume("c.nrrd").voxelSize().z, 4e-3);
 }
 
@@ -259,8 +260,8 @@ TEST(ReadNrrd, SpacingsWithoutSpace) {
         {{"space", ""}, {"space directions", ""}, {"space origin", ""}, {"spacings", "2 3 4"}});
     writeBytes("a.nrrd", header + "\n" + data());
     const Volume volume = readVolume("a.nrrd");
-    EXPECT_EQ(volume.space, "");
-    EXPECT_EQ(volume.worldFromIndex, glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 0, 0, 0, 1));
+    EXPECT_EQ(volume.space(), "");
+    EXPECT_EQ(volume.worldFromIndex(), glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 0, 0, 0, 1));
     // Axes along those of a space, which has an origin.
     writeBytes("b.nrrd", nrrd({{"space directions", ""}, {"spacings", "2 3 4"}}) + "\n" + data());
     expectSample(readVolume("b.nrrd"));
@@ -318,7 +319,7 @@ TEST(ReadNrrd, AxesOfOneVoxel) {
         changes.emplace_back("spacings", spacings);
         writeBytes("a.nrrd", nrrd(changes) + "\n" + data());
         const Volume volume = readVolume("a.nrrd");
-        EXPECT_EQ(volume.box.dims(), dims);
+        EXPECT_EQ(volume.box().dims(), dims);
         EXPECT_EQ(volume.voxelSize().x, 2);
         EXPECT_EQ(valuesOf(volume), kRamp);
     }
@@ -443,7 +444,7 @@ TEST(ReadNrrd, PackedByContent) {
          {"a.nrrd.gz", "b.nrrd.gz", "c.nrrd", "d.nrrd.gz", "e.nrrd.gz", "f.nhdr", "g.nhdr"}) {
         SCOPED_TRACE(name);
         expectSample(readVolume(name));
-        EXPECT_EQ(readVolume(name).name, std::string(1, name[0]));
+        EXPECT_EQ(readVolume(name).name(), std::string(1, name[0]));
     }
     const std::string whole = readBytes("a.nrrd.gz");
     writeBytes("h.nrrd.gz", whole.substr(0, whole.size() - 6));
@@ -483,7 +484,7 @@ TEST(ReadNrrd, AxisRanges) {
         changes.emplace_back("centers", centers);
         writeBytes("a.nrrd", nrrd(changes) + "\n" + data());
         EXPECT_EQ(readVolume("a.nrrd").voxelSize(), sizes);
-        EXPECT_EQ(glm::dvec3(readVolume("a.nrrd").worldFromIndex[3]), first);
+        EXPECT_EQ(glm::dvec3(readVolume("a.nrrd").worldFromIndex()[3]), first);
     }
 }
 
@@ -504,23 +505,23 @@ TEST(ReadNrrd, SegmentsAreLabels) {
                                          "LabelValue:=3;Extent:=0 3 0 2 0 1") +
                                  segment(2, "ID:=b;Name:=kidney;LabelValue:=1") + "\n" + data());
     const Volume volume = readVolume("a.seg.nrrd");
-    EXPECT_EQ(volume.name, "a.seg");
-    ASSERT_TRUE(volume.labels);
+    EXPECT_EQ(volume.name(), "a.seg");
+    ASSERT_TRUE(volume.labels());
     EXPECT_EQ(
-        volume.labels->entries,
+        volume.labels()->entries,
         (std::vector<LabelEntry>{
             {3, "liver, left\nlobe", glm::dvec3(0.5, 0.25, 1)}, {1, "kidney", {}}, {7, "c", {}}}));
     EXPECT_EQ(valuesOf(volume), kRamp);
     writeBytes("b.nrrd", nrrd() + "\n" + data());
-    EXPECT_FALSE(readVolume("b.nrrd").labels);
+    EXPECT_FALSE(readVolume("b.nrrd").labels());
     writeBytes("c.nrrd", nrrd() + "intent_code:=1002\n\n" + data());
-    ASSERT_TRUE(readVolume("c.nrrd").labels);
-    EXPECT_TRUE(readVolume("c.nrrd").labels->entries.empty());
+    ASSERT_TRUE(readVolume("c.nrrd").labels());
+    EXPECT_TRUE(readVolume("c.nrrd").labels()->entries.empty());
     // Shares of voxels are amounts.
     writeBytes("d.seg.nrrd", nrrd() + segment(0, "ID:=a") +
                                  "Segmentation_MasterRepresentation:=Fractional labelmap\n\n" +
                                  data());
-    EXPECT_FALSE(readVolume("d.seg.nrrd").labels);
+    EXPECT_FALSE(readVolume("d.seg.nrrd").labels());
 }
 
 // Two layers of 2x2x2 voxels, side by side; later segments lie on top.
@@ -550,7 +551,7 @@ TEST(ReadNrrd, LayersOfSegments) {
         const Volume volume = readVolume("a.seg.nrrd", {}, warnings.listener());
         // Numbers of segments; the 3 of the second layer is no segment's.
         EXPECT_EQ(valuesOf(volume), (std::vector<double>{0, 1, 3, 2, 2, 3, 4, 0}));
-        EXPECT_EQ(volume.labels->entries,
+        EXPECT_EQ(volume.labels()->entries,
                   (std::vector<LabelEntry>{
                       {1, "liver", {}}, {2, "vein", {}}, {3, "tumor", {}}, {4, "other", {}}}));
         EXPECT_EQ(warnings.lines,
@@ -559,7 +560,7 @@ TEST(ReadNrrd, LayersOfSegments) {
                       "top, numbered from 1 to 4 as layers share numbers (one layer: `volume` 0 to "
                       "1)",
                       "a.seg.nrrd: 1 value of layers has no segment, and counts as nothing"}));
-        EXPECT_EQ(volume.worldFromIndex,
+        EXPECT_EQ(volume.worldFromIndex(),
                   glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1));
         for (const std::int64_t layer : {0, 1}) {
             ReadOptions options;
@@ -568,7 +569,7 @@ TEST(ReadNrrd, LayersOfSegments) {
             std::vector<double> values;
             for (const char c : layer == 0 ? first : second) values.push_back(double(c));
             EXPECT_EQ(valuesOf(one), values);
-            EXPECT_EQ(one.labels->entries,
+            EXPECT_EQ(one.labels()->entries,
                       layer == 0 ? (std::vector<LabelEntry>{{1, "liver", {}}, {2, "tumor", {}}})
                                  : (std::vector<LabelEntry>{{1, "vein", {}}, {2, "other", {}}}));
         }

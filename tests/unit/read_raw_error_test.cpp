@@ -140,8 +140,8 @@ TEST(ReadRaw, SeveralGzipMembersAndZeros) {
     writeGzip(file, std::string(24, '\2'));
     writeBytes(file, first + readBytes(file) + std::string(1000, '\0'));
     const Volume volume = readVolume(file);
-    EXPECT_EQ(volume.histogram[1], 40u);
-    EXPECT_EQ(volume.histogram[2], 24u);
+    EXPECT_EQ(volume.histogram()[1], 40u);
+    EXPECT_EQ(volume.histogram()[2], 24u);
 }
 
 TEST(ReadRawError, NonFiniteValues) {
@@ -176,7 +176,7 @@ TEST(ReadRawError, RangeBeyondDoubles) {
         "a double can hold",
         "a_2x1x1_float64.raw", linear);
     // A table has no range.
-    EXPECT_EQ(readVolume("a_2x1x1_float64.raw").valueMax, 1.5e308);
+    EXPECT_EQ(readVolume("a_2x1x1_float64.raw").valueMax(), 1.5e308);
 }
 
 TEST(ReadRawError, MoreThanGzipCanHold) {

@@ -46,7 +46,7 @@ Plain<T> randomPlain(const glm::ivec3& dims, double low, double high, unsigned s
 // `relative` is a share of the voxel's own value; either suffices.
 template <typename T>
 void expectSame(const Volume& volume, Plain<T>& plain, double tolerance = 0, double relative = 0) {
-    const auto& tree = volume.codes->tree();
+    const auto& tree = volume.codes()->tree();
     std::map<int, std::uint64_t> counts;
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
@@ -60,7 +60,7 @@ void expectSame(const Volume& volume, Plain<T>& plain, double tolerance = 0, dou
                 const bool active = tree.probeValue(openvdb::Coord(x, y, z), code);
                 ASSERT_EQ(active, inside) << x << " " << y << " " << z;
                 if (!inside) continue;
-                const double value = volume.codeBook.valueOf(code);
+                const double value = volume.codeBook().valueOf(code);
                 const auto own = double(plain.at(x, y, z));
                 ASSERT_NEAR(value, own, std::max(tolerance, relative * std::fabs(own)))
                     << x << y << z;
@@ -71,16 +71,16 @@ void expectSame(const Volume& volume, Plain<T>& plain, double tolerance = 0, dou
             }
         }
     }
-    EXPECT_EQ(volume.activeCount, plain.values.size());
+    EXPECT_EQ(volume.activeCount(), plain.values.size());
     EXPECT_EQ(tree.activeVoxelCount(), plain.values.size());
-    EXPECT_EQ(volume.valueMin, low);
-    EXPECT_EQ(volume.valueMax, high);
-    EXPECT_EQ(volume.codeError.absolute, largestError);
-    EXPECT_EQ(volume.box, (IndexBox{glm::ivec3(0), plain.dims - 1}));
-    ASSERT_EQ(volume.histogram.size(), std::size_t(kCodeCount));
+    EXPECT_EQ(volume.valueMin(), low);
+    EXPECT_EQ(volume.valueMax(), high);
+    EXPECT_EQ(volume.codeError().absolute, largestError);
+    EXPECT_EQ(volume.box(), (IndexBox{glm::ivec3(0), plain.dims - 1}));
+    ASSERT_EQ(volume.histogram().size(), std::size_t(kCodeCount));
     for (int code = 0; code < kCodeCount; ++code) {
         const auto found = counts.find(code);
-        ASSERT_EQ(volume.histogram[std::size_t(code)], found == counts.end() ? 0 : found->second);
+        ASSERT_EQ(volume.histogram()[std::size_t(code)], found == counts.end() ? 0 : found->second);
     }
 }
 
@@ -94,9 +94,9 @@ void expectRoundTrip(const std::string& type, double low, double high, double of
         const std::string file = plain.file(type + (big ? "be" : "le"));
         writeBytes(file, bytesOf(plain.values, big));
         const Volume volume = readVolume(file);
-        EXPECT_EQ(volume.codeBook.kind, CodeBook::Kind::kInteger);
-        EXPECT_EQ(volume.codeBook.offset, offset);
-        EXPECT_EQ(volume.type, type);
+        EXPECT_EQ(volume.codeBook().kind, CodeBook::Kind::kInteger);
+        EXPECT_EQ(volume.codeBook().offset, offset);
+        EXPECT_EQ(volume.type(), type);
         expectSame(volume, plain);
     }
 }
@@ -129,10 +129,10 @@ void expectFitted(const std::string& type, double low, double high) {
         const std::string file = plain.file(type + (big ? "be" : ""));
         writeBytes(file, bytesOf(plain.values, big));
         const Volume volume = readVolume(file);
-        ASSERT_FALSE(volume.codeBook.isExact());
-        EXPECT_EQ(volume.valueMin, double(T(low)));
-        EXPECT_EQ(volume.valueMax, double(T(high)));
-        EXPECT_LE(volume.codeError.relative, 2e-4);
+        ASSERT_FALSE(volume.codeBook().isExact());
+        EXPECT_EQ(volume.valueMin(), double(T(low)));
+        EXPECT_EQ(volume.valueMax(), double(T(high)));
+        EXPECT_LE(volume.codeError().relative, 2e-4);
         expectSame(volume, plain, 1e-6 * (high - low), 2e-4);
     }
 }
@@ -154,7 +154,7 @@ void expectTable(const std::string& type, double low, double high) {
         const std::string file = plain.file(type + (big ? "be" : ""));
         writeBytes(file, bytesOf(plain.values, big));
         const Volume volume = readVolume(file);
-        ASSERT_EQ(volume.codeBook.kind, CodeBook::Kind::kTable);
+        ASSERT_EQ(volume.codeBook().kind, CodeBook::Kind::kTable);
         expectSame(volume, plain);
     }
 }
@@ -174,8 +174,8 @@ TEST(ReadRaw, BitsAskForALinearBook) {
     ReadOptions options;
     options.bits = 10;
     const Volume volume = readVolume(plain.file("float32"), options);
-    EXPECT_NEAR(volume.codeBook.step, 15.75 / 1023, 15.75 / 1023 / 120);
-    expectSame(volume, plain, volume.codeBook.step * 0.5000001);
+    EXPECT_NEAR(volume.codeBook().step, 15.75 / 1023, 15.75 / 1023 / 120);
+    expectSame(volume, plain, volume.codeBook().step * 0.5000001);
 }
 
 TEST(ReadRaw, WholeNumbersStoredAsRealsAreIntegers) {
@@ -184,11 +184,11 @@ TEST(ReadRaw, WholeNumbersStoredAsRealsAreIntegers) {
     for (float& value : plain.values) value = std::floor(value * 5000) - 7;
     writeBytes(plain.file("float32"), bytesOf(plain.values));
     const Volume volume = readVolume(plain.file("float32"));
-    EXPECT_EQ(volume.codeBook.kind, CodeBook::Kind::kInteger);
+    EXPECT_EQ(volume.codeBook().kind, CodeBook::Kind::kInteger);
     expectSame(volume, plain);
     plain.values[77] = -0.0f;
     writeBytes(plain.file("float32"), bytesOf(plain.values));
-    EXPECT_EQ(readVolume(plain.file("float32")).codeBook.kind, CodeBook::Kind::kTable);
+    EXPECT_EQ(readVolume(plain.file("float32")).codeBook().kind, CodeBook::Kind::kTable);
 }
 
 TEST(ReadRaw, OneValueOfEveryWideType) {
@@ -221,9 +221,9 @@ TEST(ReadRaw, ConstantBlocksAreTiles) {
     writeBytes(plain.file("uint8"), bytesOf(plain.values));
     const Volume volume = readVolume(plain.file("uint8"));
     expectSame(volume, plain);
-    EXPECT_EQ(volume.codes->tree().leafCount(), 1u);
-    EXPECT_EQ(volume.codes->tree().activeTileCount(), 4u * 3 * 2 - 1);
-    EXPECT_EQ(volume.codes->tree().getValueDepth(openvdb::Coord(8, 0, 8)), 2);
+    EXPECT_EQ(volume.codes()->tree().leafCount(), 1u);
+    EXPECT_EQ(volume.codes()->tree().activeTileCount(), 4u * 3 * 2 - 1);
+    EXPECT_EQ(volume.codes()->tree().getValueDepth(openvdb::Coord(8, 0, 8)), 2);
 }
 
 // One voxel that differs, at each place of a block in turn, must make the block a leaf.
@@ -234,7 +234,7 @@ TEST(ReadRaw, OneOddVoxelMakesALeaf) {
         plain.values[std::size_t(odd)] = 1;
         writeBytes(plain.file("uint8"), bytesOf(plain.values));
         const Volume volume = readVolume(plain.file("uint8"));
-        ASSERT_EQ(volume.codes->tree().leafCount(), 1u) << odd;
+        ASSERT_EQ(volume.codes()->tree().leafCount(), 1u) << odd;
         expectSame(volume, plain);
     }
 }
@@ -270,13 +270,13 @@ TEST(ReadRaw, GzipEqualsPlain) {
         writeGzip(wide.file(type) + ".gz", bytes);
         const Volume plain = readVolume(wide.file(type));
         const Volume zipped = readVolume(wide.file(type) + ".gz");
-        EXPECT_EQ(plain.histogram, zipped.histogram);
-        EXPECT_EQ(plain.name, zipped.name);
-        EXPECT_EQ(plain.codeBook.offset, zipped.codeBook.offset);
-        EXPECT_EQ(plain.codeBook.step, zipped.codeBook.step);
-        EXPECT_TRUE(plain.codes->tree().hasSameTopology(zipped.codes->tree()));
+        EXPECT_EQ(plain.histogram(), zipped.histogram());
+        EXPECT_EQ(plain.name(), zipped.name());
+        EXPECT_EQ(plain.codeBook().offset, zipped.codeBook().offset);
+        EXPECT_EQ(plain.codeBook().step, zipped.codeBook().step);
+        EXPECT_TRUE(plain.codes()->tree().hasSameTopology(zipped.codes()->tree()));
         type == "uint8" ? expectSame(zipped, narrow)
-                        : expectSame(zipped, wide, zipped.codeBook.step * 0.5000001);
+                        : expectSame(zipped, wide, zipped.codeBook().step * 0.5000001);
     }
 }
 
@@ -307,7 +307,7 @@ TEST(ReadRaw, SkipsAHeader) {
     for (const char* file : {"h.raw", "h.raw.gz"}) {
         const Volume volume = readVolume(file, options);
         expectSame(volume, plain);
-        EXPECT_EQ(volume.name, "h");
+        EXPECT_EQ(volume.name(), "h");
     }
 }
 
@@ -318,11 +318,11 @@ TEST(ReadRaw, PlacesVoxelsInTheWorld) {
     options.raw.spacing = {0.5, 2, 3};
     options.raw.origin = {10, 20, 30};
     const Volume volume = readVolume("a_2x1x1_uint8.raw", options);
-    EXPECT_EQ(volume.worldFromIndex * glm::dvec4(0, 0, 0, 1), glm::dvec4(10, 20, 30, 1));
-    EXPECT_EQ(volume.worldFromIndex * glm::dvec4(2, 3, 4, 1), glm::dvec4(11, 26, 42, 1));
+    EXPECT_EQ(volume.worldFromIndex() * glm::dvec4(0, 0, 0, 1), glm::dvec4(10, 20, 30, 1));
+    EXPECT_EQ(volume.worldFromIndex() * glm::dvec4(2, 3, 4, 1), glm::dvec4(11, 26, 42, 1));
     EXPECT_EQ(volume.voxelSize(), glm::dvec3(0.5, 2, 3));
-    EXPECT_EQ(volume.gridClass, "unknown");
-    EXPECT_EQ(volume.background, 0);
+    EXPECT_EQ(volume.gridClass(), "unknown");
+    EXPECT_EQ(volume.background(), 0);
     EXPECT_EQ(readAllVolumes("a_2x1x1_uint8.raw").size(), 1u);
 }
 
@@ -340,9 +340,9 @@ TEST(ReadRaw, ReplacesNonFiniteValues) {
     ReadOptions options;
     options.nanValue = -1.5;
     const Volume volume = readVolume(plain.file("float32"), options);
-    EXPECT_EQ(volume.valueMin, -1.5);
-    EXPECT_EQ(volume.replaced, 3u);
-    expectSame(volume, plain, volume.codeBook.step * 0.5000001);
+    EXPECT_EQ(volume.valueMin(), -1.5);
+    EXPECT_EQ(volume.replaced(), 3u);
+    expectSame(volume, plain, volume.codeBook().step * 0.5000001);
 }
 
 TEST(ReadRaw, NothingButNansIsTheReplacement) {
@@ -353,8 +353,8 @@ TEST(ReadRaw, NothingButNansIsTheReplacement) {
     ReadOptions options;
     options.nanValue = 4;
     const Volume volume = readVolume(plain.file("float64"), options);
-    EXPECT_EQ(volume.valueMin, 4);
-    EXPECT_EQ(volume.valueMax, 4);
+    EXPECT_EQ(volume.valueMin(), 4);
+    EXPECT_EQ(volume.valueMax(), 4);
 }
 
 TEST(ReadRaw, ThreadsDoNotMatter) {
@@ -367,14 +367,14 @@ TEST(ReadRaw, ThreadsDoNotMatter) {
     };
     const Volume one = read(1);
     const Volume many = read(4);
-    EXPECT_EQ(one.histogram, many.histogram);
-    EXPECT_EQ(one.codeBook.offset, many.codeBook.offset);
-    EXPECT_EQ(one.codeBook.step, many.codeBook.step);
-    ASSERT_TRUE(one.codeBook.pieces && many.codeBook.pieces);
-    EXPECT_EQ(*one.codeBook.table, *many.codeBook.table);
-    EXPECT_EQ(one.codeError.absolute, many.codeError.absolute);
-    EXPECT_EQ(one.codeError.relative, many.codeError.relative);
-    EXPECT_TRUE(one.codes->tree().hasSameTopology(many.codes->tree()));
+    EXPECT_EQ(one.histogram(), many.histogram());
+    EXPECT_EQ(one.codeBook().offset, many.codeBook().offset);
+    EXPECT_EQ(one.codeBook().step, many.codeBook().step);
+    ASSERT_TRUE(one.codeBook().pieces && many.codeBook().pieces);
+    EXPECT_EQ(*one.codeBook().table, *many.codeBook().table);
+    EXPECT_EQ(one.codeError().absolute, many.codeError().absolute);
+    EXPECT_EQ(one.codeError().relative, many.codeError().relative);
+    EXPECT_TRUE(one.codes()->tree().hasSameTopology(many.codes()->tree()));
     expectSame(many, plain, 2 * 0x1p-16);
 }
 

@@ -89,7 +89,7 @@ TEST(ReadVdbError, UnknownTypesDoNoHarm) {
     std::string bytes = readBytes("a.vdb");
     bytes.replace(bytes.find("Tree_vec3s"), 10, "Tree_weird");
     writeBytes("a.vdb", bytes);
-    EXPECT_EQ(readVolume("a.vdb").name, "d");
+    EXPECT_EQ(readVolume("a.vdb").name(), "d");
     ReadOptions options;
     options.gridName = "v";
     expectInput(std::string("a.vdb: got grid \"v\" of type weird; expected ") + kScalar, "a.vdb",

@@ -30,15 +30,15 @@ TEST(ReadVdbGrids, TakesTheFirstScalarGridOfTheFile) {
     velocity->setName("a");
     velocity->tree().setValue(Coord(0), openvdb::Vec3s(1, 2, 3));
     writeGrids("a.vdb", {velocity, oneVoxel("z", 4), oneVoxel("b", 5)});
-    EXPECT_EQ(readVolume("a.vdb").name, "z");
-    EXPECT_EQ(readVolume("a.vdb").valueMax, 4);
+    EXPECT_EQ(readVolume("a.vdb").name(), "z");
+    EXPECT_EQ(readVolume("a.vdb").valueMax(), 4);
     const std::vector<Volume> all = readAllVolumes("a.vdb");
     ASSERT_EQ(all.size(), 2u);
-    EXPECT_EQ(all[0].name, "z");
-    EXPECT_EQ(all[1].name, "b");
+    EXPECT_EQ(all[0].name(), "z");
+    EXPECT_EQ(all[1].name(), "b");
     ReadOptions options;
     options.gridName = "b";
-    EXPECT_EQ(readVolume("a.vdb", options).valueMax, 5);
+    EXPECT_EQ(readVolume("a.vdb", options).valueMax(), 5);
     EXPECT_EQ(readAllVolumes("a.vdb", options).size(), 1u);
 }
 
@@ -50,7 +50,7 @@ openvdb::FloatGrid::Ptr withClass(const std::string& name, openvdb::GridClass gr
 
 std::string defaultGridOf(const openvdb::GridCPtrVec& grids) {
     writeGrids("a.vdb", grids);
-    return readVolume("a.vdb").name;
+    return readVolume("a.vdb").name();
 }
 
 TEST(ReadVdbGrids, TheDefaultIsDensityThenFogThenWhatHelpsNoSolver) {
@@ -89,14 +89,14 @@ TEST(ReadVdbGrids, AGridWithoutANameCanBeAskedFor) {
     const TempFolder folder;
     writeGrids("a.vdb", {oneVoxel("density", 1), oneVoxel("", 2)});
     ReadOptions options;
-    EXPECT_EQ(readVolume("a.vdb", options).valueMax, 1);
+    EXPECT_EQ(readVolume("a.vdb", options).valueMax(), 1);
     options.gridName = "";
-    EXPECT_EQ(readVolume("a.vdb", options).valueMax, 2);
+    EXPECT_EQ(readVolume("a.vdb", options).valueMax(), 2);
     EXPECT_EQ(readAllVolumes("a.vdb", options).size(), 1u);
     writeGrids("a.vdb", {oneVoxel("b", 3), oneVoxel("", 4), oneVoxel("", 5)});
-    EXPECT_EQ(readVolume("a.vdb", options).valueMax, 4);
+    EXPECT_EQ(readVolume("a.vdb", options).valueMax(), 4);
     options.gridName = "[1]";
-    EXPECT_EQ(readVolume("a.vdb", options).valueMax, 5);
+    EXPECT_EQ(readVolume("a.vdb", options).valueMax(), 5);
     EXPECT_TRUE(listGrids("a.vdb").preferred == "b");
 }
 
@@ -122,11 +122,11 @@ void expectDensityInTheWay(const std::string& got, const std::string& expected,
                          [] { readVolume("a.vdb"); });
     ReadOptions options;
     options.gridName = "heat";
-    EXPECT_EQ(readVolume("a.vdb", options).valueMax, 5);
+    EXPECT_EQ(readVolume("a.vdb", options).valueMax(), 5);
     std::vector<std::string> read;
     std::vector<std::string> others;
     VolumeVisitor visitor;
-    visitor.volume = [&](const Volume& volume) { read.push_back(volume.name); };
+    visitor.volume = [&](const Volume& volume) { read.push_back(volume.name()); };
     visitor.other = [&](const std::string& name, const std::string& type) {
         others.push_back(name + " (" + type + ")");
     };
@@ -200,7 +200,7 @@ TEST(ReadVdbGrids, NeverTheNextFogVolume) {
     first(openvdb::GRID_UNKNOWN);
     std::vector<std::string> warnings;
     const Listener listener{{}, [&](const std::string& text) { warnings.push_back(text); }};
-    EXPECT_EQ(readVolume("a.vdb", {}, listener).name, "heat");
+    EXPECT_EQ(readVolume("a.vdb", {}, listener).name(), "heat");
     EXPECT_EQ(warnings, std::vector<std::string>{
                             "a.vdb: passed over steam (weird), of types that are not known"});
 }
@@ -214,7 +214,7 @@ TEST(ReadVdbGrids, LevelSetsWithNaNAreAmongTheOthers) {
     std::vector<std::string> read;
     std::vector<std::string> others;
     VolumeVisitor visitor;
-    visitor.volume = [&](const Volume& volume) { read.push_back(volume.name); };
+    visitor.volume = [&](const Volume& volume) { read.push_back(volume.name()); };
     visitor.other = [&](const std::string& name, const std::string&) { others.push_back(name); };
     forEachVolume("a.vdb", {}, visitor);
     EXPECT_EQ(read, std::vector<std::string>{"density"});
@@ -231,7 +231,7 @@ TEST(ReadVdbGrids, LevelSetsWithNaNAreAmongTheOthers) {
     broken->setGridClass(openvdb::GRID_FOG_VOLUME);
     writeGrids("a.vdb", {broken, oneVoxel("density", 2)});
     EXPECT_THROW(forEachVolume("a.vdb", {}, visitor), Error);
-    EXPECT_EQ(readVolume("a.vdb").valueMax, 2);
+    EXPECT_EQ(readVolume("a.vdb").valueMax(), 2);
 }
 
 TEST(ReadVdbGrids, InactiveNaNIsNobodysValue) {
@@ -240,8 +240,8 @@ TEST(ReadVdbGrids, InactiveNaNIsNobodysValue) {
     grid->tree().setValueOff(Coord(2, 2, 3), std::nanf(""));
     writeGrids("a.vdb", {grid});
     const Volume volume = readVolume("a.vdb");
-    EXPECT_EQ(volume.activeCount, 1u);
-    EXPECT_EQ(volume.valueMax, 3);
+    EXPECT_EQ(volume.activeCount(), 1u);
+    EXPECT_EQ(volume.valueMax(), 3);
 }
 
 TEST(ReadVdbGrids, NamesThatRepeat) {
@@ -249,13 +249,13 @@ TEST(ReadVdbGrids, NamesThatRepeat) {
     writeGrids("a.vdb", {oneVoxel("d", 1), oneVoxel("d", 2), oneVoxel("", 3)});
     const std::vector<Volume> all = readAllVolumes("a.vdb");
     ASSERT_EQ(all.size(), 3u);
-    EXPECT_EQ(all[0].name, "d[0]");
-    EXPECT_EQ(all[1].name, "d[1]");
+    EXPECT_EQ(all[0].name(), "d[0]");
+    EXPECT_EQ(all[1].name(), "d[1]");
     ReadOptions options;
     options.gridName = "d[1]";
-    EXPECT_EQ(readVolume("a.vdb", options).valueMax, 2);
+    EXPECT_EQ(readVolume("a.vdb", options).valueMax(), 2);
     options.gridName = "d";
-    EXPECT_EQ(readVolume("a.vdb", options).valueMax, 1);
+    EXPECT_EQ(readVolume("a.vdb", options).valueMax(), 1);
 }
 
 // Grids that share one tree are stored once; each must still be readable alone.
@@ -269,7 +269,7 @@ TEST(ReadVdbGrids, InstancesOfOneTree) {
     ReadOptions options;
     options.gridName = "second";
     const Volume volume = readVolume("a.vdb", options);
-    EXPECT_EQ(volume.valueMax, 1.5);
+    EXPECT_EQ(volume.valueMax(), 1.5);
     EXPECT_EQ(volume.voxelSize(), glm::dvec3(3));
 }
 
@@ -284,9 +284,9 @@ TEST(ReadVdbGrids, FilesWrittenAsAStream) {
     }
     const std::vector<Volume> all = readAllVolumes("a.vdb");
     ASSERT_EQ(all.size(), 2u);
-    EXPECT_EQ(all[0].name, "f");
-    EXPECT_EQ(all[1].type, "half");
-    EXPECT_EQ(all[1].valueMax, 2.5);
+    EXPECT_EQ(all[0].name(), "f");
+    EXPECT_EQ(all[1].type(), "half");
+    EXPECT_EQ(all[1].valueMax(), 2.5);
 }
 
 // OpenVDB 13 writes version 225 for every file, of which only grids of halves are new.
@@ -345,7 +345,7 @@ TEST(ReadVdbGrids, GridsOfHalves) {
                     file.setCompression(flags);
                     file.write(openvdb::GridCPtrVec{halves});
                     const Volume volume = readVolume("a.vdb");
-                    EXPECT_EQ(volume.type, "half");
+                    EXPECT_EQ(volume.type(), "half");
                     expectSame(volume, *grid, 0);
                     const VdbFile vdb("a.vdb");
                     const TreeGrid read = vdb.read(vdb.grids()[0], {});

@@ -27,18 +27,18 @@ TEST(ReadVdb, FloatsAreSpreadOverTheirRange) {
         "density", [](int i) { return -0.25f + 0.001f * float(i); }, 0.125f);
     writeGrids("a.vdb", {grid});
     const Volume exact = readVolume("a.vdb");
-    EXPECT_EQ(exact.codeBook.kind, CodeBook::Kind::kTable);
+    EXPECT_EQ(exact.codeBook().kind, CodeBook::Kind::kTable);
     expectSame(exact, *grid, 0);
 
     ReadOptions options;
     options.bits = 16;
     const Volume volume = readVolume("a.vdb", options);
-    EXPECT_EQ(volume.name, "density");
-    EXPECT_EQ(volume.type, "float");
-    EXPECT_EQ(volume.gridClass, "unknown");
-    EXPECT_EQ(volume.codeBook.kind, CodeBook::Kind::kLinear);
-    EXPECT_EQ(volume.valueMin, -0.25);
-    expectSame(volume, *grid, volume.codeBook.step * 0.5000001);
+    EXPECT_EQ(volume.name(), "density");
+    EXPECT_EQ(volume.type(), "float");
+    EXPECT_EQ(volume.gridClass(), "unknown");
+    EXPECT_EQ(volume.codeBook().kind, CodeBook::Kind::kLinear);
+    EXPECT_EQ(volume.valueMin(), -0.25);
+    expectSame(volume, *grid, volume.codeBook().step * 0.5000001);
 }
 
 // Under gzip or not is what the bytes are, whatever the name says.
@@ -57,7 +57,7 @@ TEST(ReadVdb, PackedByContent) {
         kept.keepSource = true;
         for (const ReadOptions& options : {ReadOptions(), kept}) {
             const Volume volume = readVolume(name, options);
-            EXPECT_EQ(volume.name, "density");
+            EXPECT_EQ(volume.name(), "density");
             expectSame(volume, *grid, 0);
         }
         EXPECT_EQ(listVolumes(name).at(0).name, "density");
@@ -77,9 +77,9 @@ TEST(ReadVdb, HalvesAreExact) {
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     writeGrids("a.vdb", {grid});
     const Volume volume = readVolume("a.vdb");
-    EXPECT_EQ(volume.type, "half");
-    EXPECT_EQ(volume.gridClass, "fog volume");
-    EXPECT_EQ(volume.codeBook.kind, CodeBook::Kind::kHalf);
+    EXPECT_EQ(volume.type(), "half");
+    EXPECT_EQ(volume.gridClass(), "fog volume");
+    EXPECT_EQ(volume.codeBook().kind, CodeBook::Kind::kHalf);
     expectSame(volume, *grid, 0);
 }
 
@@ -89,15 +89,15 @@ TEST(ReadVdb, TheHalfBookNeedsEveryValueToBeAHalf) {
     auto grid = makeGrid<openvdb::FloatGrid>(
         "density", [](int i) { return float(i % 2048) / 2048; }, 0);
     writeGrids("a.vdb", {grid});
-    EXPECT_EQ(readVolume("a.vdb").codeBook.kind, CodeBook::Kind::kHalf);
-    EXPECT_EQ(readVolume("a.vdb").type, "float");
+    EXPECT_EQ(readVolume("a.vdb").codeBook().kind, CodeBook::Kind::kHalf);
+    EXPECT_EQ(readVolume("a.vdb").type(), "float");
     grid->tree().setValue(Coord(0), 2049.0f / 4096);
     writeGrids("a.vdb", {grid});
-    EXPECT_EQ(readVolume("a.vdb").codeBook.kind, CodeBook::Kind::kTable);
+    EXPECT_EQ(readVolume("a.vdb").codeBook().kind, CodeBook::Kind::kTable);
     grid->tree().setValue(Coord(0), 0.5f);
     grid->tree().addTile(1, Coord(-160, 8, 16), 65536, true);
     writeGrids("a.vdb", {grid});
-    EXPECT_EQ(readVolume("a.vdb").codeBook.kind, CodeBook::Kind::kTable);
+    EXPECT_EQ(readVolume("a.vdb").codeBook().kind, CodeBook::Kind::kTable);
 }
 
 TEST(ReadVdb, Doubles) {
@@ -106,15 +106,15 @@ TEST(ReadVdb, Doubles) {
         "d", [](int i) { return 1e-30 * (1 + std::sin(i)); }, 0);
     writeGrids("a.vdb", {grid});
     const Volume volume = readVolume("a.vdb");
-    EXPECT_EQ(volume.type, "double");
-    EXPECT_EQ(volume.codeBook.kind, CodeBook::Kind::kTable);
+    EXPECT_EQ(volume.type(), "double");
+    EXPECT_EQ(volume.codeBook().kind, CodeBook::Kind::kTable);
     expectSame(volume, *grid, 0);
 
     ReadOptions options;
     options.bits = 9;
     const Volume coarse = readVolume("a.vdb", options);
-    EXPECT_NEAR(coarse.codeBook.codeOf(coarse.valueMax), 509, 2);
-    expectSame(coarse, *grid, coarse.codeBook.step * 0.5000001);
+    EXPECT_NEAR(coarse.codeBook().codeOf(coarse.valueMax()), 509, 2);
+    expectSame(coarse, *grid, coarse.codeBook().step * 0.5000001);
 }
 
 template <typename Grid>
@@ -127,9 +127,9 @@ void expectIntegers(const std::string& type, std::int64_t low, std::int64_t high
         T(low));
     writeGrids("a.vdb", {grid});
     const Volume volume = readVolume("a.vdb");
-    EXPECT_EQ(volume.type, type);
-    ASSERT_EQ(volume.codeBook.kind, near ? CodeBook::Kind::kInteger : CodeBook::Kind::kTable);
-    EXPECT_EQ(volume.valueMin, double(low));
+    EXPECT_EQ(volume.type(), type);
+    ASSERT_EQ(volume.codeBook().kind, near ? CodeBook::Kind::kInteger : CodeBook::Kind::kTable);
+    EXPECT_EQ(volume.valueMin(), double(low));
     expectSame(volume, *grid, 0);
 }
 
@@ -150,10 +150,10 @@ TEST(ReadVdb, HugeIntegers) {
     grid->tree().setValue(Coord(1, 2, 4), std::numeric_limits<std::int64_t>::min());
     writeGrids("a.vdb", {grid});
     const Volume volume = readVolume("a.vdb");
-    EXPECT_FALSE(volume.codeBook.isExact());
-    EXPECT_EQ(volume.valueMin, -0x1p63);
-    EXPECT_EQ(volume.valueMax, 0x1p63);
-    EXPECT_EQ(volume.codeError.absolute, 0);
+    EXPECT_FALSE(volume.codeBook().isExact());
+    EXPECT_EQ(volume.valueMin(), -0x1p63);
+    EXPECT_EQ(volume.valueMax(), 0x1p63);
+    EXPECT_EQ(volume.codeError().absolute, 0);
 }
 
 TEST(ReadVdb, BoolsAndMasks) {
@@ -162,8 +162,8 @@ TEST(ReadVdb, BoolsAndMasks) {
         "b", [](int i) { return i % 3 == 0; }, false);
     writeGrids("b.vdb", {bools});
     const Volume volume = readVolume("b.vdb");
-    EXPECT_EQ(volume.type, "bool");
-    EXPECT_EQ(volume.codeBook.kind, CodeBook::Kind::kInteger);
+    EXPECT_EQ(volume.type(), "bool");
+    EXPECT_EQ(volume.codeBook().kind, CodeBook::Kind::kInteger);
     expectSame(volume, *bools, 0);
 
     auto masks = openvdb::MaskGrid::create();
@@ -172,10 +172,10 @@ TEST(ReadVdb, BoolsAndMasks) {
     masks->tree().addTile(1, Coord(64, 0, 0), true, true);
     writeGrids("m.vdb", {masks});
     const Volume mask = readVolume("m.vdb");
-    EXPECT_EQ(mask.type, "mask");
-    EXPECT_EQ(mask.activeCount, 514u);
-    EXPECT_EQ(mask.histogram[1], 514u);
-    EXPECT_EQ(mask.valueMin, 1);
+    EXPECT_EQ(mask.type(), "mask");
+    EXPECT_EQ(mask.activeCount(), 514u);
+    EXPECT_EQ(mask.histogram()[1], 514u);
+    EXPECT_EQ(mask.valueMin(), 1);
     expectSame(mask, *masks, 0);
 }
 
@@ -199,7 +199,7 @@ TEST(ReadVdb, PlacesVoxelsInTheWorld) {
         const Volume volume = readVolume("a.vdb");
         for (const Coord& c : {Coord(0), Coord(1, 0, 0), Coord(-7, 13, 29)}) {
             const openvdb::Vec3d world = transform->indexToWorld(c);
-            const glm::dvec4 mapped = volume.worldFromIndex * glm::dvec4(c.x(), c.y(), c.z(), 1);
+            const glm::dvec4 mapped = volume.worldFromIndex() * glm::dvec4(c.x(), c.y(), c.z(), 1);
             for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(mapped[axis], world[axis], 1e-12);
         }
         for (int axis = 0; axis < 3; ++axis) {
@@ -215,24 +215,24 @@ TEST(ReadVdb, LevelSetsBecomeFog) {
     sphere->setName("ls");
     writeGrids("a.vdb", {sphere});
     const Volume fog = readVolume("a.vdb");
-    EXPECT_EQ(fog.gridClass, "fog volume");
-    EXPECT_EQ(fog.background, 0);
-    EXPECT_GT(fog.valueMin, 0);
-    EXPECT_EQ(fog.valueMax, 1);
+    EXPECT_EQ(fog.gridClass(), "fog volume");
+    EXPECT_EQ(fog.background(), 0);
+    EXPECT_GT(fog.valueMin(), 0);
+    EXPECT_EQ(fog.valueMax(), 1);
     // All of the inside is active, none of the outside; deep inside is 1.
-    EXPECT_NEAR(double(fog.activeCount), 4.0 / 3 * M_PI * 20 * 20 * 20, 300);
+    EXPECT_NEAR(double(fog.activeCount()), 4.0 / 3 * M_PI * 20 * 20 * 20, 300);
     Code code = 0;
-    EXPECT_TRUE(fog.codes->tree().probeValue(Coord(0), code));
-    EXPECT_NEAR(fog.codeBook.valueOf(code), 1, 1e-9);
-    EXPECT_FALSE(fog.codes->tree().isValueOn(Coord(21, 0, 0)));
+    EXPECT_TRUE(fog.codes()->tree().probeValue(Coord(0), code));
+    EXPECT_NEAR(fog.codeBook().valueOf(code), 1, 1e-9);
+    EXPECT_FALSE(fog.codes()->tree().isValueOn(Coord(21, 0, 0)));
 
     ReadOptions options;
     options.levelSetToFog = false;
     const Volume kept = readVolume("a.vdb", options);
-    EXPECT_EQ(kept.gridClass, "level set");
-    EXPECT_EQ(kept.background, 1.5);
-    EXPECT_LT(kept.valueMin, -1.4);
-    expectSame(kept, *sphere, kept.codeBook.step * 0.5000001);
+    EXPECT_EQ(kept.gridClass(), "level set");
+    EXPECT_EQ(kept.background(), 1.5);
+    EXPECT_LT(kept.valueMin(), -1.4);
+    expectSame(kept, *sphere, kept.codeBook().step * 0.5000001);
 }
 
 // As the distance fields in a Blender cache are.
@@ -246,7 +246,7 @@ TEST(ReadVdb, LevelSetsWithoutABandAreKept) {
     Listener listener;
     listener.warning = [&](const std::string& line) { warnings.push_back(line); };
     const Volume volume = readVolume("a.vdb", {}, listener);
-    EXPECT_EQ(volume.gridClass, "level set");
+    EXPECT_EQ(volume.gridClass(), "level set");
     expectSame(volume, *grid, 0);
     EXPECT_EQ(warnings, std::vector<std::string>{"a.vdb: grid \"phi\": level set with background 0 "
                                                  "kept as it is, not made fog"});
@@ -260,7 +260,7 @@ TEST(ReadVdb, IntegersMarkedAsHalf) {
     grid->setSaveFloatAsHalf(true);
     writeGrids("a.vdb", {grid});
     const Volume volume = readVolume("a.vdb");
-    EXPECT_EQ(volume.type, "int32");
+    EXPECT_EQ(volume.type(), "int32");
     expectSame(volume, *grid, 0);
 }
 
@@ -275,11 +275,11 @@ TEST(ReadVdb, EmptyGridsAreEmptyVolumes) {
     listener.warning = [&](const std::string& line) { warnings.push_back(line); };
     const Volume volume = readVolume("a.vdb", {}, listener);
     EXPECT_TRUE(volume.empty());
-    EXPECT_TRUE(volume.box.empty());
-    EXPECT_EQ(volume.background, 3);
-    EXPECT_EQ(volume.valueMax, 0);
-    EXPECT_TRUE(volume.codes->tree().empty());
-    EXPECT_EQ(volume.histogram, std::vector<std::uint64_t>(kCodeCount));
+    EXPECT_TRUE(volume.box().empty());
+    EXPECT_EQ(volume.background(), 3);
+    EXPECT_EQ(volume.valueMax(), 0);
+    EXPECT_TRUE(volume.codes()->tree().empty());
+    EXPECT_EQ(volume.histogram(), std::vector<std::uint64_t>(kCodeCount));
     EXPECT_EQ(warnings, std::vector<std::string>{"a.vdb: grid \"nothing\": no active voxels"});
 }
 
@@ -311,7 +311,7 @@ TEST(ReadVdb, NonFiniteBackgroundIsZeroWithAWarning) {
     std::vector<std::string> warnings;
     Listener listener;
     listener.warning = [&](const std::string& line) { warnings.push_back(line); };
-    EXPECT_EQ(readVolume("a.vdb", {}, listener).background, 0);
+    EXPECT_EQ(readVolume("a.vdb", {}, listener).background(), 0);
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_EQ(warnings[0], "a.vdb: grid \"g\": background nan taken as 0");
 }
@@ -326,9 +326,9 @@ TEST(ReadVdb, ThreadsDoNotMatter) {
     };
     const Volume one = read(1);
     const Volume many = read(4);
-    EXPECT_EQ(one.histogram, many.histogram);
-    EXPECT_EQ(one.codeBook.step, many.codeBook.step);
-    EXPECT_EQ(one.codeBook.offset, many.codeBook.offset);
+    EXPECT_EQ(one.histogram(), many.histogram());
+    EXPECT_EQ(one.codeBook().step, many.codeBook().step);
+    EXPECT_EQ(one.codeBook().offset, many.codeBook().offset);
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ std::vector<Volume> someFrames() {
             [&](int x, int y, int z) { return (x * x + 3 * y * y + z * z + 40 * i) % 200; },
             {0.5, 0.5, 0.5}));
     }
-    frames[1].worldFromIndex[3].x = 10;
+    test::changed(frames[1])->worldFromIndex[3].x = 10;
     return frames;
 }
 
@@ -72,7 +72,7 @@ void expectTheSame(const Volume& a, const Volume& b) {
     EXPECT_EQ(defaultRange(a), defaultRange(b));
     EXPECT_EQ(bulkRange(a), bulkRange(b));
     for (Code code = 0; code < 200; ++code)
-        EXPECT_EQ(a.codeBook.valueOf(code), b.codeBook.valueOf(code));
+        EXPECT_EQ(a.codeBook().valueOf(code), b.codeBook().valueOf(code));
 }
 
 TEST(SequenceLook, IsOfAllFramesWhateverTheirOrder) {
@@ -91,10 +91,10 @@ TEST(SequenceLook, IsOfAllFramesWhateverTheirOrder) {
     const Volume& whole = look.standIn(0, kMainGrid, frames[0]);
     expectTheSame(whole, turned.standIn(2, kMainGrid, frames[2]));
     expectTheSame(look.seen(), turned.seen());
-    EXPECT_EQ(whole.activeCount,
-              frames[0].activeCount + frames[1].activeCount + frames[2].activeCount);
+    EXPECT_EQ(whole.activeCount(),
+              frames[0].activeCount() + frames[1].activeCount() + frames[2].activeCount());
     // From -4 to 12 voxels, and one frame that is moved by 20.
-    EXPECT_EQ(look.seen().box, (IndexBox{{-4, -4, -4}, {29, 12, 12}}));
+    EXPECT_EQ(look.seen().box(), (IndexBox{{-4, -4, -4}, {29, 12, 12}}));
     EXPECT_EQ(look.smallestVoxelWorld(), 0.5);
 
     SequenceLook read(0);
@@ -115,8 +115,8 @@ TEST(SequenceLook, OfOneFrameIsThatFrame) {
     const Volume& whole = look.standIn(0, kMainGrid, volume);
     EXPECT_EQ(defaultRange(whole), defaultRange(volume));
     EXPECT_EQ(bulkRange(whole), bulkRange(volume));
-    EXPECT_EQ(look.seen().box, volume.box);
-    EXPECT_EQ(look.seen().worldFromIndex, volume.worldFromIndex);
+    EXPECT_EQ(look.seen().box(), volume.box());
+    EXPECT_EQ(look.seen().worldFromIndex(), volume.worldFromIndex());
 }
 
 TEST(SequenceLook, RefusesWhatIsNoneInAFile) {

@@ -27,7 +27,7 @@ std::vector<Slot> someSlotMap() {
 
 Slot slotAt(const Volume& volume, const glm::ivec3& p, std::span<const Slot> slotMap) {
     Code code = 0;
-    const bool active = volume.codes->tree().probeValue(openvdb::Coord(p.x, p.y, p.z), code);
+    const bool active = volume.codes()->tree().probeValue(openvdb::Coord(p.x, p.y, p.z), code);
     if (!active) return kEmptySlot;
     return slotMap.empty() ? code + 1 : slotMap[code + 1];
 }
@@ -35,7 +35,7 @@ Slot slotAt(const Volume& volume, const glm::ivec3& p, std::span<const Slot> slo
 // Counts voxel by voxel, each slice against the one before; in front of the first there is nothing.
 std::vector<SliceCounts> countPlainly(const Volume& volume, int axis,
                                       std::span<const Slot> slotMap) {
-    const IndexBox& box = volume.box;
+    const IndexBox& box = volume.box();
     std::vector<SliceCounts> counts(box.dims()[axis]);
     for (int x = box.min.x; x <= box.max.x; ++x) {
         for (int y = box.min.y; y <= box.max.y; ++y) {
@@ -121,11 +121,11 @@ TEST(SliceCounts, VoxelsFarApartTakeNoMemory) {
     auto tree = std::make_shared<CodeTree>();
     tree->tree().setValueOn(openvdb::Coord(-kFar, 0, 0), Code{1});
     tree->tree().setValueOn(openvdb::Coord(kFar, 0, 0), Code{1});
-    Volume volume;
+    VolumeData volume;
     volume.codes = tree;
     volume.activeCount = 2;
     volume.box = {{-kFar, 0, 0}, {kFar, 0, 0}};
-    const std::vector<SliceCounts> counts = countDeltasPerSlice(volume, 0, {}, 1 << 28);
+    const std::vector<SliceCounts> counts = countDeltasPerSlice(Volume(volume), 0, {}, 1 << 28);
     ASSERT_EQ(counts.size(), 8u);
     for (std::size_t i = 0; i < 8; ++i) {
         EXPECT_EQ(counts[i].visible, i == 0 || i == 7 ? 1u : 0u) << i;
@@ -144,10 +144,10 @@ TEST(SliceCounts, SameOnEveryNumberOfThreads) {
 }
 
 TEST(SliceCounts, EmptyVolumeHasNone) {
-    Volume volume;
+    VolumeData volume;
     volume.codes = std::make_shared<CodeTree>();
-    EXPECT_TRUE(countDeltasPerSlice(volume, 0).empty());
-    EXPECT_EQ(predictStamps(volume, 0).automatic, 0u);
+    EXPECT_TRUE(countDeltasPerSlice(Volume(volume), 0).empty());
+    EXPECT_EQ(predictStamps(Volume(volume), 0).automatic, 0u);
 }
 
 TEST(StampCounts, KnownInClosedForm) {
@@ -169,13 +169,13 @@ TEST(StampCounts, KnownInClosedForm) {
 TEST(StampCounts, OneValueCanBeMadeEmpty) {
     const Volume volume =
         test::makeVolume({{0, 0, 0}, {3, 3, 0}}, [](int x, int, int) { return x < 3 ? 9 : 10; });
-    const std::vector<Slot> slots = slotsWithout(volume.codeBook, 9);
+    const std::vector<Slot> slots = slotsWithout(volume.codeBook(), 9);
     EXPECT_EQ(slots[0], kEmptySlot);
     EXPECT_EQ(slots[9 + 1], kEmptySlot);
     EXPECT_EQ(slots[10 + 1], 10 + 1);
     EXPECT_EQ(predictStamps(volume, 2, slots).sparse, 4u);
     // A value that no code stands for hides nothing.
-    EXPECT_EQ(predictStamps(volume, 2, slotsWithout(volume.codeBook, 9.5)).sparse, 16u);
+    EXPECT_EQ(predictStamps(volume, 2, slotsWithout(volume.codeBook(), 9.5)).sparse, 16u);
 }
 
 }  // namespace

@@ -37,11 +37,11 @@ TEST(Table1Options, PutsEveryVoxelIntoTheMiddleOfItsPixel) {
     const Volume volume =
         test::makeVolume({glm::ivec3(0), glm::ivec3(19, 11, 7)}, [](int x, int, int) { return x; });
     const RenderOptions options = table1Options(volume, ctRamp());
-    const Camera camera = makeCamera(options.camera, volume.box, volume.worldFromIndex);
+    const Camera camera = makeCamera(options.camera, volume.box(), volume.worldFromIndex());
     EXPECT_EQ(camera.sizePixels, glm::ivec2(20, 12));
     EXPECT_EQ(camera.direction, glm::dvec3(0, 0, -1));
     for (const glm::ivec2 voxel : {glm::ivec2(0, 0), glm::ivec2(7, 3), glm::ivec2(19, 11)}) {
-        const glm::dvec4 world = volume.worldFromIndex * glm::dvec4(voxel, 4, 1);
+        const glm::dvec4 world = volume.worldFromIndex() * glm::dvec4(voxel, 4, 1);
         const glm::dvec2 pixel = camera.pixelFromWorld(glm::dvec3(world));
         EXPECT_NEAR(pixel.x, voxel.x + 0.5, 1e-9);
         EXPECT_NEAR(pixel.y, 11 - voxel.y + 0.5, 1e-9);

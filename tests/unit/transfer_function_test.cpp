@@ -12,6 +12,7 @@
 #include "image/srgb.h"
 #include "optics/color_curve.h"
 #include "optics/transfer_function.h"
+#include "support/changed_volume.h"
 
 namespace deltasplat {
 namespace {
@@ -25,7 +26,7 @@ TransferFunction withOpacities(std::vector<TransferFunction::OpacityPoint> point
 
 // A volume of integer codes; `counts` says how many voxels have each of the first codes.
 Volume volumeOf(const std::string& type, const std::vector<std::uint64_t>& counts) {
-    Volume volume;
+    VolumeData volume;
     volume.type = type;
     volume.codeBook = CodeBook::integer();
     volume.histogram.assign(kCodeCount, 0);
@@ -39,7 +40,7 @@ Volume volumeOf(const std::string& type, const std::vector<std::uint64_t>& count
     }
     volume.valueMin = std::max(least, 0);
     volume.box = {glm::ivec3(0), glm::ivec3(int(volume.activeCount) - 1, 0, 0)};
-    return volume;
+    return Volume(std::move(volume));
 }
 
 TEST(TransferFunction, opacityIsAnExactLerpBetweenPlainPoints) {
@@ -339,7 +340,7 @@ TEST(DefaultRamp, showsAVolumeOfOneValue) {
 TEST(DefaultRamp, fogIsWhiteWhereItIsThinToo) {
     Volume volume = volumeOf("half", {5000, 0, 0, 10, 0, 979, 0, 0, 11});
     EXPECT_EQ(defaultRamp(volume).colorAt(3), glm::dvec3(0));
-    volume.gridClass = "fog volume";
+    test::changed(volume)->gridClass = "fog volume";
     const TransferFunction ramp = defaultRamp(volume);
     for (const double x : {-1.0, 3.0, 4.0, 8.0, 100.0}) EXPECT_EQ(ramp.colorAt(x), glm::dvec3(1));
     EXPECT_EQ(ramp.opacityAt(0), 0);
@@ -350,24 +351,24 @@ TEST(DefaultRamp, fogIsWhiteWhereItIsThinToo) {
 TEST(DefaultRamp, showsTheThinnestFog) {
     Volume volume = volumeOf("half", {5000, 0, 910, 0, 0, 0, 0, 0, 90});
     EXPECT_EQ(hiddenShare(volume, defaultRamp(volume), {}), 0.91);
-    volume.gridClass = "fog volume";
+    test::changed(volume)->gridClass = "fog volume";
     const TransferFunction ramp = defaultRamp(volume);
     EXPECT_EQ(ramp.opacityAt(0), 0);
     EXPECT_DOUBLE_EQ(ramp.opacityAt(2), kRampOpacity / 4);
     EXPECT_EQ(hiddenShare(volume, ramp, {}), 0);
     EXPECT_EQ(rampRange(volume), glm::dvec2(0, 8));
     // Where the background is more than all else, nothing says what is empty.
-    volume.background = 20;
+    test::changed(volume)->background = 20;
     EXPECT_EQ(rampRange(volume).x, 0);
 }
 
 // A volume with values from `lowest` on, one to a code.
 Volume signedVolume(int lowest, const std::vector<std::uint64_t>& counts) {
-    Volume volume = volumeOf("int16", counts);
-    volume.codeBook.offset = lowest;
-    volume.valueMin = lowest;
-    volume.valueMax = lowest + int(counts.size()) - 1;
-    return volume;
+    VolumeData data = volumeOf("int16", counts).data();
+    data.codeBook.offset = lowest;
+    data.valueMin = lowest;
+    data.valueMax = lowest + int(counts.size()) - 1;
+    return Volume(std::move(data));
 }
 
 TEST(DefaultRamp, divergesFromZeroWhereMostValuesAre) {
@@ -407,28 +408,28 @@ TEST(DefaultRamp, goesOneWayWhereZeroIsAValueAsOthers) {
     EXPECT_EQ(defaultRamp(signedVolume(-3, overshoot)).name, "grey ramp");
     // Fog has no other side.
     Volume fog = signedVolume(-3, {5, 10, 20, 600, 30, 20, 10, 5});
-    fog.gridClass = "fog volume";
+    test::changed(fog)->gridClass = "fog volume";
     EXPECT_EQ(defaultRamp(fog).name, "white ramp");
 }
 
 TEST(DefaultRamp, knowsFogByItsClassOrItsName) {
     Volume volume = volumeOf("float", {1});
-    volume.hasBackground = true;
-    volume.gridClass = "unknown";
-    volume.name = "density";
+    test::changed(volume)->hasBackground = true;
+    test::changed(volume)->gridClass = "unknown";
+    test::changed(volume)->name = "density";
     EXPECT_TRUE(isFog(volume));
-    volume.space = "LPS";  // a scan that has become a .vdb
+    test::changed(volume)->space = "LPS";  // a scan that has become a .vdb
     EXPECT_FALSE(isFog(volume));
-    volume.space = "";
-    volume.name = "heat";
+    test::changed(volume)->space = "";
+    test::changed(volume)->name = "heat";
     EXPECT_FALSE(isFog(volume));
-    volume.gridClass = "fog volume";
+    test::changed(volume)->gridClass = "fog volume";
     EXPECT_TRUE(isFog(volume));
-    volume.gridClass = "level set";
+    test::changed(volume)->gridClass = "level set";
     EXPECT_FALSE(isFog(volume));
-    volume.gridClass = "unknown";
-    volume.name = "density";
-    volume.hasBackground = false;  // a file density.nii
+    test::changed(volume)->gridClass = "unknown";
+    test::changed(volume)->name = "density";
+    test::changed(volume)->hasBackground = false;  // a file density.nii
     EXPECT_FALSE(isFog(volume));
 }
 
@@ -457,9 +458,9 @@ TEST(DefaultRange, isTheTypesRangeForBytesAndTheDatasOtherwise) {
 TEST(DefaultRange, takesInTheBackgroundOfAGrid) {
     Volume grid = volumeOf("int32", {0, 0, 3, 4});
     EXPECT_EQ(defaultRange(grid), glm::dvec2(2, 3));
-    grid.hasBackground = true;
+    test::changed(grid)->hasBackground = true;
     EXPECT_EQ(defaultRange(grid), glm::dvec2(0, 3));
-    grid.background = 9;
+    test::changed(grid)->background = 9;
     EXPECT_EQ(defaultRange(grid), glm::dvec2(2, 9));
 }
 
@@ -467,7 +468,9 @@ TEST(DefaultRange, isNeverEmpty) {
     EXPECT_EQ(defaultRange(volumeOf("uint16", {0, 0, 7})), glm::dvec2(0, 2));
     EXPECT_EQ(defaultRange(volumeOf("uint16", {7})), glm::dvec2(0, 1));
     Volume negative = volumeOf("int16", {7});
-    negative.valueMin = negative.valueMax = -4;
+    VolumeData lower = negative.data();
+    lower.valueMin = lower.valueMax = -4;
+    negative = Volume(std::move(lower));
     EXPECT_EQ(defaultRange(negative), glm::dvec2(-4, 0));
 }
 

@@ -46,7 +46,7 @@ deltasplat_tests(formats_tests unit
     unit/write_grids_test.cpp unit/write_vdb_test.cpp)
 
 deltasplat_tests(words_tests unit
-    unit/block_gradients_test.cpp unit/join_probe_test.cpp unit/look_palette_test.cpp
+    unit/block_gradients_test.cpp unit/join_probe_test.cpp
     unit/packed_deltas_test.cpp unit/slab_plan_test.cpp unit/slice_joiner_test.cpp
     unit/value_mixer_test.cpp)
 

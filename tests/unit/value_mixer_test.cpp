@@ -16,11 +16,11 @@ namespace deltasplat {
 namespace {
 
 Volume volumeOf(const CodeBook& book, const std::vector<Code>& codes) {
-    Volume volume;
+    VolumeData volume;
     volume.codeBook = book;
     volume.histogram.assign(kCodeCount, 0);
     for (const Code code : codes) ++volume.histogram[code];
-    return volume;
+    return Volume(std::move(volume));
 }
 
 std::vector<Slot> sameSlots() {
@@ -31,8 +31,8 @@ std::vector<Slot> sameSlots() {
 
 double valueOf(const ValueMixer& mixer, Slot slot) {
     if (slot == kEmptySlot) return NAN;
-    EXPECT_NE(mixer.levels().histogram[slot - 1], 0u);
-    return mixer.levels().codeBook.valueOf(Code(slot - 1));
+    EXPECT_NE(mixer.levels().histogram()[slot - 1], 0u);
+    return mixer.levels().codeBook().valueOf(Code(slot - 1));
 }
 
 // What a mix of two slices of one value each comes out as: the values of its thin slices.
@@ -87,11 +87,11 @@ TEST(ValueMixer, MixesValuesOfAnyBook) {
           volumeOf(CodeBook::half(), {0x3C00, 0x8000, 0x9234, 0xBC00, 0xC123, 0xFBFF})}) {
         std::vector<Code> present;
         for (int code = 0; code < kCodeCount; ++code)
-            if (volume.histogram[code] != 0) present.push_back(Code(code));
+            if (volume.histogram()[code] != 0) present.push_back(Code(code));
         for (int i = 0; i < 40; ++i) {
             const auto pick = [&] { return present[random() % present.size()]; };
             const Code here = pick(), before = pick(), behind = pick();
-            const double v = volume.codeBook.valueOf(here);
+            const double v = volume.codeBook().valueOf(here);
             const auto near = [&](double got, double a, double b, double share) {
                 const double expected = a + (b - a) * share;
                 const double smallest = 1e-6 / 4;
@@ -99,9 +99,9 @@ TEST(ValueMixer, MixesValuesOfAnyBook) {
                     << a << " and " << b;
             };
             const std::vector<double> values = mixed(volume, 2, here + 1, before + 1, behind + 1);
-            near(values.front(), v, volume.codeBook.valueOf(before), 0.25);
+            near(values.front(), v, volume.codeBook().valueOf(before), 0.25);
             near(values[5], v, v, 0);
-            near(values.back(), v, volume.codeBook.valueOf(behind), 0.25);
+            near(values.back(), v, volume.codeBook().valueOf(behind), 0.25);
         }
     }
 }
@@ -176,7 +176,7 @@ TEST(ValueMixer, NothingThatCanBeSeenVanishes) {
     for (const double threshold : {30.0, 50.0, 60.0, 99.0}) {
         std::vector<Slot> map(kSlotCount, kEmptySlot);
         for (int level = 0; level < kCodeCount; ++level) {
-            if (mixer.levels().codeBook.valueOf(Code(level)) >= threshold)
+            if (mixer.levels().codeBook().valueOf(Code(level)) >= threshold)
                 map[std::size_t(level) + 1] = level + 1;
         }
         MixWindow window;
@@ -209,14 +209,14 @@ TEST(ValueMixer, NothingVanishesInHaze) {
     const ValueMixer mixer(volume, {2, 2}, true);
     std::vector<Slot> all(kSlotCount, kEmptySlot);
     for (int level = 0; level < kCodeCount; ++level)
-        if (mixer.levels().histogram[std::size_t(level)] != 0)
+        if (mixer.levels().histogram()[std::size_t(level)] != 0)
             all[std::size_t(level) + 1] = level + 1;
     for (const double haze : {1e-12, 1e-3, 0.05, 0.4}) {
         SCOPED_TRACE(haze);
         // Opaque from 80 on.
         std::vector<float> opacities(kSlotCount);
         for (int level = 0; level < kCodeCount; ++level) {
-            const double value = mixer.levels().codeBook.valueOf(Code(level));
+            const double value = mixer.levels().codeBook().valueOf(Code(level));
             opacities[std::size_t(level) + 1] = float(value < 80 ? haze : 1);
         }
         MixWindow window;
@@ -248,8 +248,8 @@ TEST(ValueMixer, WhatIsSeenBetweenMiddlesIsSeenOnAverage) {
             std::vector<Slot> map(kSlotCount, kEmptySlot);
             std::vector<float> opacities(kSlotCount);
             for (int level = 0; level < kCodeCount; ++level) {
-                if (mixer.levels().histogram[std::size_t(level)] == 0) continue;
-                const double opacity = opacityOf(mixer.levels().codeBook.valueOf(Code(level)));
+                if (mixer.levels().histogram()[std::size_t(level)] == 0) continue;
+                const double opacity = opacityOf(mixer.levels().codeBook().valueOf(Code(level)));
                 if (opacity == 0) continue;
                 map[std::size_t(level) + 1] = level + 1;
                 opacities[std::size_t(level) + 1] = float(opacity);
@@ -289,8 +289,8 @@ TEST(ValueMixer, NothingVanishesInHazeBesideAnything) {
     std::vector<Slot> map(kSlotCount, kEmptySlot);
     std::vector<float> opacities(kSlotCount);
     for (int level = 0; level < kCodeCount; ++level) {
-        if (mixer.levels().histogram[std::size_t(level)] == 0) continue;
-        const double value = mixer.levels().codeBook.valueOf(Code(level));
+        if (mixer.levels().histogram()[std::size_t(level)] == 0) continue;
+        const double value = mixer.levels().codeBook().valueOf(Code(level));
         map[std::size_t(level) + 1] = value < 1 ? kEmptySlot : level + 1;
         opacities[std::size_t(map[std::size_t(level) + 1])] = value < 1    ? 0.0f
                                                               : value < 80 ? 0.1f
@@ -341,7 +341,7 @@ struct PlainMix {
         return between(alongU(place), alongU(next), 0.25);
     }
     std::size_t levelSlot(double code) const {
-        const CodeBook& levels = mixer.levels().codeBook;
+        const CodeBook& levels = mixer.levels().codeBook();
         return std::isnan(code) ? 0 : std::size_t(levels.codeOf(code)) + 1;
     }
     glm::ivec3 perVoxel() const {
@@ -447,7 +447,7 @@ TEST(ValueMixer, OwnValuesAreKeptExactly) {
         std::iota(codes.begin(), codes.end(), Code{0});
         const Volume volume = volumeOf(CodeBook::ofTable(values), codes);
         const ValueMixer mixer(volume, {2, 2});
-        const CodeBook& levels = mixer.levels().codeBook;
+        const CodeBook& levels = mixer.levels().codeBook();
         for (const Code code : codes) EXPECT_EQ(levels.valueOf(mixer.levelOf(code)), values[code]);
         MixWindow window;
         std::mt19937 random(3);
@@ -478,7 +478,7 @@ TEST(ValueMixer, OwnValuesAreKeptExactly) {
     const Volume integers = volumeOf(CodeBook::integer(), codes);
     const ValueMixer mixer(integers, {2, 2});
     for (const Code code : codes)
-        EXPECT_EQ(mixer.levels().codeBook.valueOf(mixer.levelOf(code)), code);
+        EXPECT_EQ(mixer.levels().codeBook().valueOf(mixer.levelOf(code)), code);
 }
 
 TEST(ValueMixer, LevelsAreAsManyAsThereIsRoomFor) {
@@ -487,8 +487,8 @@ TEST(ValueMixer, LevelsAreAsManyAsThereIsRoomFor) {
     const Volume volume = volumeOf(CodeBook::linear(0, 1), all);
     const ValueMixer mixer(volume, {2, 1});
     for (const int code : {0, 1, 30000, 65535}) {
-        EXPECT_EQ(mixer.levels().codeBook.valueOf(mixer.levelOf(Code(code))),
-                  volume.codeBook.valueOf(Code(code)));
+        EXPECT_EQ(mixer.levels().codeBook().valueOf(mixer.levelOf(Code(code))),
+                  volume.codeBook().valueOf(Code(code)));
     }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deltasplat/ingest/value_statistics.h"
+#include "support/changed_volume.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,7 @@ namespace {
 
 // A volume of which only the values are known, as a raw file gives them.
 Volume volumeOf(const CodeBook& book, const std::vector<std::uint64_t>& countOfCode) {
-    Volume volume;
+    VolumeData volume;
     volume.codeBook = book;
     volume.histogram = countOfCode;
     volume.histogram.resize(kCodeCount);
@@ -20,7 +21,7 @@ Volume volumeOf(const CodeBook& book, const std::vector<std::uint64_t>& countOfC
         volume.valueMax = book.valueOf(Code(code));
         volume.activeCount += countOfCode[code];
     }
-    return volume;
+    return Volume(std::move(volume));
 }
 
 std::uint64_t sumOf(const std::vector<std::uint64_t>& counts) {
@@ -46,8 +47,8 @@ TEST(GuessBackground, OfTwoAsFrequentIsTheSmaller) {
 
 TEST(GuessBackground, IsTheBackgroundWhereThereIsOne) {
     Volume volume = volumeOf(CodeBook::integer(), {10, 90});
-    volume.hasBackground = true;
-    volume.background = -0.5;
+    test::changed(volume)->hasBackground = true;
+    test::changed(volume)->background = -0.5;
     EXPECT_EQ(guessBackground(volume), -0.5);
 }
 
@@ -126,7 +127,7 @@ TEST(Percentile, CountsOfHugeTilesDoNotOverflow) {
 
 TEST(Percentile, OfNothingIsTheBackground) {
     Volume volume = volumeOf(CodeBook::half(), {});
-    volume.background = 0.25;
+    test::changed(volume)->background = 0.25;
     EXPECT_EQ(percentileValue(volume, 50), 0.25);
     EXPECT_EQ(percentileCode({}, 50), 0);
 }

@@ -42,7 +42,7 @@ typename Grid::Ptr makeGrid(const std::string& name,
 // Compares codes with the grid in every active voxel, both ways, and the statistics.
 template <typename Grid>
 void expectSame(const Volume& volume, const Grid& grid, double tolerance) {
-    const auto& tree = volume.codes->tree();
+    const auto& tree = volume.codes()->tree();
     std::map<int, std::uint64_t> counts;
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
@@ -51,26 +51,26 @@ void expectSame(const Volume& volume, const Grid& grid, double tolerance) {
         high = std::max(high, double(*it));
         Code code = 0;
         ASSERT_TRUE(tree.probeValue(it.getCoord(), code));
-        ASSERT_NEAR(volume.codeBook.valueOf(code), double(*it), tolerance);
+        ASSERT_NEAR(volume.codeBook().valueOf(code), double(*it), tolerance);
         counts[code] += it.getVoxelCount();
     }
     EXPECT_TRUE(tree.hasSameTopology(grid.tree()));
-    EXPECT_EQ(volume.activeCount, grid.activeVoxelCount());
+    EXPECT_EQ(volume.activeCount(), grid.activeVoxelCount());
     EXPECT_EQ(tree.activeVoxelCount(), grid.activeVoxelCount());
     EXPECT_EQ(tree.activeTileCount(), grid.tree().activeTileCount());
-    EXPECT_EQ(volume.background, double(grid.background()));
+    EXPECT_EQ(volume.background(), double(grid.background()));
     const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
     for (int axis = 0; axis < 3; ++axis) {
-        EXPECT_EQ(volume.box.min[axis], box.min()[axis]);
-        EXPECT_EQ(volume.box.max[axis], box.max()[axis]);
+        EXPECT_EQ(volume.box().min[axis], box.min()[axis]);
+        EXPECT_EQ(volume.box().max[axis], box.max()[axis]);
     }
-    ASSERT_EQ(volume.histogram.size(), std::size_t(kCodeCount));
+    ASSERT_EQ(volume.histogram().size(), std::size_t(kCodeCount));
     for (int code = 0; code < kCodeCount; ++code) {
         const auto found = counts.find(code);
-        ASSERT_EQ(volume.histogram[std::size_t(code)], found == counts.end() ? 0 : found->second);
+        ASSERT_EQ(volume.histogram()[std::size_t(code)], found == counts.end() ? 0 : found->second);
     }
-    EXPECT_EQ(volume.valueMin, low);
-    EXPECT_EQ(volume.valueMax, high);
+    EXPECT_EQ(volume.valueMin(), low);
+    EXPECT_EQ(volume.valueMax(), high);
 }
 
 inline openvdb::FloatGrid::Ptr oneVoxel(const std::string& name, float value) {

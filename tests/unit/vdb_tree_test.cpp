@@ -262,7 +262,7 @@ TEST(VdbTree, LeavesWithoutActiveVoxelsAreSound) {
     grid->tree().setValueOff(Coord(0, 0, 20), 0.7F);
     grid->tree().touchLeaf(Coord(100, 0, 0));
     writeBy("a.vdb", grid, openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
-    EXPECT_EQ(readVolume("a.vdb").activeCount, 1u);
+    EXPECT_EQ(readVolume("a.vdb").activeCount(), 1u);
 }
 
 TEST(VdbTree, DamagedLeavesAreRefused) {

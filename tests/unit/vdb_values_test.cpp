@@ -49,7 +49,7 @@ Volume readByTree() {
     ReadOptions options;
     options.keepSource = true;
     Volume volume = readVolume("a.vdb", options);
-    EXPECT_NE(volume.source, nullptr);
+    EXPECT_NE(volume.source(), nullptr);
     return volume;
 }
 
@@ -66,8 +66,8 @@ void expectErrorBothWays(const std::string& message) {
 // The same nodes, tiles and codes.
 void expectSame(const Volume& a, const Volume& b) {
     test::expectSameFacts(a, b);
-    const CodeTree::Tree& p = a.codes->tree();
-    const CodeTree::Tree& q = b.codes->tree();
+    const CodeTree::Tree& p = a.codes()->tree();
+    const CodeTree::Tree& q = b.codes()->tree();
     ASSERT_TRUE(p.hasSameTopology(q));
     std::uint64_t wrong = 0;
     auto there = q.cbeginValueOn();
@@ -83,7 +83,7 @@ void expectSameBothWays(const openvdb::GridBase::Ptr& grid) {
         const VdbFile file("a.vdb");
         ASSERT_TRUE(file.readValues(file.grids().front(), VdbFile::Find::kByWalking));
         const Volume volume = readVolume("a.vdb");
-        EXPECT_EQ(volume.source, nullptr);
+        EXPECT_EQ(volume.source(), nullptr);
         expectSame(volume, readByTree());
     }
 }
@@ -180,7 +180,7 @@ TEST(VdbValues, ATileThatIsNoHalf) {
     grid->tree().addTile(3, openvdb::Coord(0, 8192, 0), 0.1f, true);
     writeAs(openvdb::io::COMPRESS_BLOSC, grid);
     const Volume volume = readVolume("a.vdb");
-    EXPECT_EQ(volume.codeBook.kind, CodeBook::Kind::kTable);
+    EXPECT_EQ(volume.codeBook().kind, CodeBook::Kind::kTable);
     expectSame(volume, readByTree());
 }
 
@@ -197,11 +197,11 @@ TEST(VdbValues, WhatIsNotFiniteIsRefusedOrReplaced) {
                     [] { readVolume("a.vdb"); });
         ReadOptions options;
         options.nanValue = 0.5;
-        EXPECT_EQ(readVolume("a.vdb", options).replaced, 1u);
+        EXPECT_EQ(readVolume("a.vdb", options).replaced(), 1u);
         // Inactive ones are nobody's business.
         grid->tree().setValueOff(openvdb::Coord(803, 2, 1));
         writeAs(openvdb::io::COMPRESS_BLOSC, grid);
-        EXPECT_EQ(readVolume("a.vdb").replaced, 0u);
+        EXPECT_EQ(readVolume("a.vdb").replaced(), 0u);
     }
 }
 

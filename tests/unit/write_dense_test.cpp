@@ -9,6 +9,7 @@
 #include "deltasplat/diff/compare_volumes.h"
 #include "deltasplat/ingest/label_list.h"
 #include "formats/readers.h"
+#include "support/changed_volume.h"
 #include "unit/convert_helpers.h"
 #include "unit/format_helpers.h"
 #include "unit/vdb_helpers.h"
@@ -27,13 +28,14 @@ std::vector<std::string> formats() {
 }
 
 double valueAt(const Volume& volume, const glm::ivec3& place) {
-    return volume.codeBook.valueOf(volume.codes->tree().getValue(Coord(place.x, place.y, place.z)));
+    return volume.codeBook().valueOf(
+        volume.codes()->tree().getValue(Coord(place.x, place.y, place.z)));
 }
 
 template <typename T>
 void expectValues(const Volume& volume, const std::vector<T>& values, const glm::ivec3& dims) {
-    ASSERT_EQ(volume.box.dims(), dims);
-    EXPECT_EQ(volume.activeCount, values.size());
+    ASSERT_EQ(volume.box().dims(), dims);
+    EXPECT_EQ(volume.activeCount(), values.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
         const glm::ivec3 place(int(i) % dims.x, int(i) / dims.x % dims.y, int(i) / dims.x / dims.y);
         ASSERT_EQ(valueAt(volume, place), double(values[i]));
@@ -47,13 +49,13 @@ void expectThereAndBack(const std::string& type, T low, T high) {
         SCOPED_TRACE(type + extension);
         const TempFolder folder;
         Volume volume = rawVolume(values, kDims, type, {0.5, 1.25, 2}, {-3, 4.5, 8});
-        volume.space = "RAS";
+        test::changed(volume)->space = "RAS";
         const WriteReport report = write("out" + extension, volume);
         EXPECT_EQ(report.notes, std::vector<std::string>{});
         EXPECT_TRUE(report.lossless);
         EXPECT_EQ(report.maxError, 0);
         const Volume back = readVolume("out" + extension);
-        EXPECT_EQ(back.type, type);
+        EXPECT_EQ(back.type(), type);
         expectValues(back, values, kDims);
     }
 }
@@ -82,13 +84,13 @@ void expectWholeNumbers(const std::string& type, const std::vector<T>& values, d
     for (const std::string extension : {".npy", ".nrrd", ".mha", ".nii"}) {
         SCOPED_TRACE(type + extension);
         Volume volume = readCompared("in.nrrd", keep, {});
-        if (extension == ".nii") volume.space = "RAS";
+        if (extension == ".nii") test::changed(volume)->space = "RAS";
         const WriteReport report = write("out" + extension, volume);
         EXPECT_EQ(report.notes, std::vector<std::string>{});
         EXPECT_TRUE(report.lossless);
         EXPECT_EQ(report.maxError, 0);
         const Volume back = readCompared("out" + extension, keep, {});
-        EXPECT_EQ(back.type, type);
+        EXPECT_EQ(back.type(), type);
         EXPECT_EQ(compareVolumes(volume, back).maxError, 0);
         if (extension == ".npy") {
             EXPECT_TRUE(readBytes("out.npy").ends_with(bytes));
@@ -105,7 +107,7 @@ void expectWholeNumbers(const std::string& type, const std::vector<T>& values, d
     // OpenVDB has no unsigned ones.
     Warnings warnings;
     const Volume volume = readVolume("in.nrrd", keep, warnings.listener());
-    EXPECT_EQ(volume.readError, vdbError);
+    EXPECT_EQ(volume.readError(), vdbError);
     EXPECT_EQ(warnings.lines.size(), vdbError > 0 ? 1 : 0);
     const WriteReport vdb = write("out.vdb", volume);
     const bool isSaid = type == "uint64" && vdbError == 0;
@@ -164,16 +166,16 @@ void expectPlaced(const glm::dmat4& matrix, const std::string& space) {
         SCOPED_TRACE(space + extension);
         const TempFolder folder;
         Volume volume = rawVolume(pattern<std::uint8_t>(kDims, 0, 9), kDims, "uint8");
-        volume.worldFromIndex = matrix;
-        volume.space = space;
+        test::changed(volume)->worldFromIndex = matrix;
+        test::changed(volume)->space = space;
         write("out" + extension, volume);
         const Volume back = readVolume("out" + extension);
         const bool nifti = extension.rfind(".nii", 0) == 0;
         const bool nrrd = extension == ".nrrd" || extension == ".nhdr";
         const std::string native = nifti ? "RAS" : nrrd ? space : "LPS";
-        EXPECT_EQ(back.space, space.empty() && !nifti ? "" : native);
+        EXPECT_EQ(back.space(), space.empty() && !nifti ? "" : native);
         const bool turns = !space.empty() && native != space;
-        EXPECT_LT(farthest(back.worldFromIndex, turns ? otherSpace(matrix) : matrix),
+        EXPECT_LT(farthest(back.worldFromIndex(), turns ? otherSpace(matrix) : matrix),
                   nifti ? 1e-5 : 1e-13);
     }
 }
@@ -192,8 +194,8 @@ TEST(WriteDense, ShearsComeBack) {
     expectPlaced(sheared, "LPS");
     const TempFolder folder;
     Volume volume = rawVolume(pattern<std::uint8_t>(kDims, 0, 9), kDims, "uint8");
-    volume.worldFromIndex = sheared;
-    volume.space = "LPS";
+    test::changed(volume)->worldFromIndex = sheared;
+    test::changed(volume)->space = "LPS";
     const WriteReport report = write("out.mha", volume);
     EXPECT_FALSE(report.lossless);
     EXPECT_EQ(report.notes, std::vector<std::string>{
@@ -206,8 +208,9 @@ TEST(WriteDense, ShearsComeBack) {
 TEST(WriteDense, ChainsOfFormatsKeepTheAffine) {
     const TempFolder folder;
     Volume volume = rawVolume(pattern<std::uint8_t>(kDims, 0, 9), kDims, "uint8");
-    volume.worldFromIndex = glm::dmat4(glm::mat4(turned(true)));  // what NIfTI's floats hold
-    volume.space = "RAS";
+    test::changed(volume)->worldFromIndex =
+        glm::dmat4(glm::mat4(turned(true)));  // what NIfTI's floats hold
+    test::changed(volume)->space = "RAS";
     std::string file = "a.nii";
     EXPECT_TRUE(write(file, volume).lossless);
     int step = 0;
@@ -218,17 +221,17 @@ TEST(WriteDense, ChainsOfFormatsKeepTheAffine) {
         file = next;
         if (extension.rfind(".nii", 0) != 0) continue;
         SCOPED_TRACE(next);
-        EXPECT_EQ(readVolume(next).worldFromIndex, volume.worldFromIndex);
+        EXPECT_EQ(readVolume(next).worldFromIndex(), volume.worldFromIndex());
     }
 }
 
 // Returns where a voxel lies, in millimetres left, back and up of the patient or, where there was
 // none, in its own space, which NIfTI calls RAS.
 glm::dvec3 placeOf(const Volume& volume, const glm::ivec3& voxel, bool patient) {
-    const glm::dvec3 place(volume.worldFromIndex * glm::dvec4(voxel, 1));
-    const double unit = volume.lengthUnit.empty() ? 1 : millimetresIn(volume.lengthUnit);
+    const glm::dvec3 place(volume.worldFromIndex() * glm::dvec4(voxel, 1));
+    const double unit = volume.lengthUnit().empty() ? 1 : millimetresIn(volume.lengthUnit());
     return unit *
-           (patient && volume.space == "RAS" ? glm::dvec3(-place.x, -place.y, place.z) : place);
+           (patient && volume.space() == "RAS" ? glm::dvec3(-place.x, -place.y, place.z) : place);
 }
 
 // Wherever a volume goes, its voxels stay where they are in the world, and lengths whose unit is
@@ -240,8 +243,8 @@ TEST(WriteDense, UnitsComeBack) {
         for (const std::string unit : {"", "mm", "um", "nm", "m", "in"}) {
             if (!space.empty() && !unit.empty() && unit != "mm") continue;
             Volume volume = rawVolume(values, kDims, "uint8", {0.5, 1.25, 2}, {-3, 4.5, 8});
-            volume.space = space;
-            volume.lengthUnit = unit;
+            test::changed(volume)->space = space;
+            test::changed(volume)->lengthUnit = unit;
             for (const std::string extension : {".vdb", ".nii", ".nrrd", ".nhdr", ".mhd", ".mha"}) {
                 SCOPED_TRACE(space + " " + unit + " " + extension);
                 write("a" + extension, volume);
@@ -254,9 +257,9 @@ TEST(WriteDense, UnitsComeBack) {
                 for (const std::string& file : {"a" + extension, std::string("b.vdb"),
                                                 std::string("c.vdb"), "d" + extension}) {
                     const Volume back = readVolume(file);
-                    EXPECT_EQ(back.lengthUnit.empty(), unit.empty()) << file;
+                    EXPECT_EQ(back.lengthUnit().empty(), unit.empty()) << file;
                     if (extension == ".vdb") {
-                        EXPECT_EQ(back.lengthUnit, unit);
+                        EXPECT_EQ(back.lengthUnit(), unit);
                     }
                     for (const glm::ivec3 voxel : {glm::ivec3(0), glm::ivec3(18, 16, 9)}) {
                         const bool patient = !space.empty();
@@ -281,8 +284,8 @@ TEST(WriteDense, LabelsComeBack) {
                                         {9, "bone \\n", {}}};
     for (const std::vector<LabelEntry>& entries : {named, std::vector<LabelEntry>()}) {
         Volume volume = rawVolume(values, kDims, "uint8");
-        volume.space = "LPS";
-        volume.labels = std::make_shared<const LabelList>(LabelList{entries});
+        test::changed(volume)->space = "LPS";
+        test::changed(volume)->labels = std::make_shared<const LabelList>(LabelList{entries});
         for (const std::string extension : {".vdb", ".nrrd", ".nii", ".mha"}) {
             SCOPED_TRACE(extension);
             const bool holdsNames = extension == ".vdb" || extension == ".nrrd";
@@ -296,14 +299,14 @@ TEST(WriteDense, LabelsComeBack) {
             for (const std::string& file : {"a" + extension, std::string("b.vdb"),
                                             std::string("c.vdb"), std::string("d.seg.nrrd")}) {
                 const Volume back = readVolume(file);
-                ASSERT_TRUE(back.labels) << file;
-                EXPECT_EQ(back.labels->entries, holdsNames ? entries : std::vector<LabelEntry>())
+                ASSERT_TRUE(back.labels()) << file;
+                EXPECT_EQ(back.labels()->entries, holdsNames ? entries : std::vector<LabelEntry>())
                     << file;
             }
         }
     }
     Volume volume = rawVolume(values, kDims, "uint8");
-    volume.labels = std::make_shared<const LabelList>(LabelList{named});
+    test::changed(volume)->labels = std::make_shared<const LabelList>(LabelList{named});
     EXPECT_EQ(write("out.nii", volume).notes.back(),
               "out.nii: names and colours of labels are left out: NIfTI has no place for them "
               "(.vdb and .seg.nrrd have)");
@@ -379,8 +382,8 @@ void expectTypeOfGrid(typename Grid::ValueType value, const std::string& file,
         EXPECT_EQ(report.notes[0], file + ": " + note);
     }
     const Volume back = readVolume(file);
-    EXPECT_EQ(back.type, type);
-    EXPECT_NEAR(back.valueMax, double(value), maxError);
+    EXPECT_EQ(back.type(), type);
+    EXPECT_NEAR(back.valueMax(), double(value), maxError);
 }
 
 TEST(WriteDense, TypesOfGrids) {
@@ -409,7 +412,7 @@ TEST(WriteDense, ThroughAVdbTypesComeBack) {
     const std::vector<std::int16_t> values = pattern<std::int16_t>(kDims, -1000, 3071);
     write("mid.vdb", rawVolume(values, kDims, "int16"));
     Volume volume = readKept("mid.vdb");
-    EXPECT_EQ(volume.type, "float");
+    EXPECT_EQ(volume.type(), "float");
     const WriteReport report = write("out_19x17x10_int16.raw", volume);
     EXPECT_EQ(report.notes, std::vector<std::string>{});
     EXPECT_TRUE(report.lossless);

@@ -12,6 +12,7 @@
 #include "deltasplat/convert/write_volume.h"
 #include "deltasplat/delta/delta_file.h"
 #include "deltasplat/ingest/list_grids.h"
+#include "support/changed_volume.h"
 #include "unit/convert_helpers.h"
 #include "unit/format_helpers.h"
 #include "unit/vdb_compare.h"
@@ -130,21 +131,23 @@ TEST(WriteGrids, PlacesAreExact) {
     const TempFolder folder;
     const std::vector<std::uint8_t> values = pattern<std::uint8_t>(kDims, 0, 9);
     Volume volume = rawVolume(values, kDims, "uint8", {0.7, 1.1, 0.3}, {5.1, -1e6 / 3, 0.1});
-    const glm::dmat4 scaled = volume.worldFromIndex;
+    const glm::dmat4 scaled = volume.worldFromIndex();
     write("out.vdb", volume);
     EXPECT_EQ(readGrids("out.vdb").at(0)->transform().mapType(), "ScaleTranslateMap");
-    EXPECT_EQ(readVolume("out.vdb").worldFromIndex, scaled);
+    EXPECT_EQ(readVolume("out.vdb").worldFromIndex(), scaled);
 
-    volume.worldFromIndex = glm::rotate(scaled, 0.3, glm::normalize(glm::dvec3(1, 2, 3)));
-    volume.worldFromIndex[1].x += 0.2;  // and a shear
+    test::changed(volume)->worldFromIndex =
+        glm::rotate(scaled, 0.3, glm::normalize(glm::dvec3(1, 2, 3)));
+    test::changed(volume)->worldFromIndex[1].x += 0.2;  // and a shear
     write("out.vdb", volume);
-    EXPECT_EQ(readVolume("out.vdb").worldFromIndex, volume.worldFromIndex);
+    EXPECT_EQ(readVolume("out.vdb").worldFromIndex(), volume.worldFromIndex());
 
-    volume.worldFromIndex = glm::scale(glm::dmat4(1), glm::dvec3(-1e-4, 3e-4, 1.0001e-4));
+    test::changed(volume)->worldFromIndex =
+        glm::scale(glm::dmat4(1), glm::dvec3(-1e-4, 3e-4, 1.0001e-4));
     write("out.vdb", volume);
-    EXPECT_EQ(readVolume("out.vdb").worldFromIndex, volume.worldFromIndex);
+    EXPECT_EQ(readVolume("out.vdb").worldFromIndex(), volume.worldFromIndex());
 
-    volume.worldFromIndex = glm::scale(glm::dmat4(1), glm::dvec3(1e-20, 1, 1));
+    test::changed(volume)->worldFromIndex = glm::scale(glm::dmat4(1), glm::dvec3(1e-20, 1, 1));
     expectError(ErrorCode::kFailed,
                 "voxel size: got 1e-20,1,1 without a unit of length; expected a volume of at least "
                 "3e-15, as OpenVDB's grids have it (.nrrd has no such limit)",
@@ -163,8 +166,8 @@ TEST(WriteGrids, SmallVoxelsComeBack) {
                 Volume volume = rawVolume(pattern<float>(kDims, 0, 9), kDims, "float32",
                                           glm::dvec3(size), {3 * size, 0, 0});
                 EXPECT_EQ(volume.voxelSize(), glm::dvec3(size));
-                volume.space = space;
-                volume.lengthUnit = unit;
+                test::changed(volume)->space = space;
+                test::changed(volume)->lengthUnit = unit;
                 if (deltas) {
                     DeltaFile file;
                     file.add(volume, {});
@@ -173,11 +176,11 @@ TEST(WriteGrids, SmallVoxelsComeBack) {
                     write("out.vdb", volume);
                 }
                 const Volume back = readKept("out.vdb");
-                EXPECT_EQ(back.lengthUnit, kept);
+                EXPECT_EQ(back.lengthUnit(), kept);
                 const double factor = millimetresIn(unit) / millimetresIn(kept);
                 for (int axis = 0; axis < 3; ++axis)
                     EXPECT_NEAR(back.voxelSize()[axis], factor * size, 1e-12 * factor * size);
-                EXPECT_NEAR(back.worldFromIndex[3].x, factor * 3 * size, 1e-12 * factor * size);
+                EXPECT_NEAR(back.worldFromIndex()[3].x, factor * 3 * size, 1e-12 * factor * size);
             }
         }
     }
@@ -187,9 +190,9 @@ TEST(WriteGrids, TheSpaceComesBack) {
     const TempFolder folder;
     Volume volume = rawVolume(pattern<std::uint8_t>(kDims, 0, 9), kDims, "uint8");
     for (const char* const space : {"RAS", "LPS", ""}) {
-        volume.space = space;
+        test::changed(volume)->space = space;
         write("out.vdb", volume);
-        EXPECT_EQ(readVolume("out.vdb").space, space);
+        EXPECT_EQ(readVolume("out.vdb").space(), space);
     }
 }
 
@@ -275,7 +278,7 @@ TEST(WriteGrids, CodesOfHalvesAreStoredAsHalves) {
     grid->setSaveFloatAsHalf(true);
     openvdb::io::File("in.vdb").write({grid});
     const Volume volume = readVolume("in.vdb");
-    ASSERT_EQ(volume.type, "half");
+    ASSERT_EQ(volume.type(), "half");
     write("out.vdb", volume);
     const auto back = readGrid<openvdb::FloatGrid>("out.vdb");
     EXPECT_TRUE(back->saveFloatAsHalf());
@@ -329,7 +332,7 @@ std::vector<Volume> byName(const std::filesystem::path& file) {
         options.gridName = name;
         options.keepSource = true;
         volumes.push_back(readVolume(file, options));
-        EXPECT_EQ(volumes.back().name, name);
+        EXPECT_EQ(volumes.back().name(), name);
     }
     return volumes;
 }
@@ -341,7 +344,7 @@ void expectNames(const std::filesystem::path& file, const std::vector<std::strin
     DeltaFile deltas;
     const std::vector<Volume> volumes = byName(file);
     for (std::size_t i = 0; i < volumes.size(); ++i) {
-        EXPECT_EQ(volumes[i].valueMax, i + 1);
+        EXPECT_EQ(volumes[i].valueMax(), i + 1);
         deltas.add(volumes[i], {});
     }
     deltas.write("delta.vdb");
@@ -451,7 +454,7 @@ TEST(WriteGrids, UnsignedIntegersThatBecomeDoubles) {
     file.bits = 64;
     file.data = bytesOf(values);
     writeBytes("a.nii", file.bytes());
-    EXPECT_EQ(readKept("a.nii").readError, 1000);  // doubles are 2048 apart there
+    EXPECT_EQ(readKept("a.nii").readError(), 1000);  // doubles are 2048 apart there
 }
 
 }  // namespace

@@ -136,7 +136,7 @@ double BenchRun::comparability() const {
 BenchRun measureMethods(const Volume& volume, const RenderOptions& options, int repeats,
                         const Listener& listener) {
     BenchRun run;
-    run.dims = volume.box.dims();
+    run.dims = volume.box().dims();
     run.threads = threadCount();
     run.repeats = repeats;
     const bool exactToo = !options.splat.tolerance.isExact();

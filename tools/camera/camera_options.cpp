@@ -205,8 +205,8 @@ void warnOfClipping(const PictureOptions& options, std::optional<int> frame, con
     double nearest = std::numeric_limits<double>::infinity();
     double farthest = -nearest;
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec4 index(cornerOf(volume.box, corner), 1);
-        const glm::dvec3 away = glm::dvec3(volume.worldFromIndex * index) - camera.eyeWorld();
+        const glm::dvec4 index(cornerOf(volume.box(), corner), 1);
+        const glm::dvec3 away = glm::dvec3(volume.worldFromIndex() * index) - camera.eyeWorld();
         nearest = std::min(nearest, glm::dot(away, camera.direction));
         farthest = std::max(farthest, glm::dot(away, camera.direction));
     }

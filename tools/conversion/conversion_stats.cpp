@@ -16,11 +16,11 @@ namespace deltasplat {
 namespace fs = std::filesystem;
 
 void ConversionStats::add(const Volume& volume, const std::string& codeBook) {
-    voxels += voxelsOf(volume.box);
-    active += volume.activeCount;
-    maxError = std::max(maxError, volume.readError);
-    lossless = lossless && volume.replaced == 0 && volume.readError == 0;
-    areLabels = areLabels || volume.labels;
+    voxels += voxelsOf(volume.box());
+    active += volume.activeCount();
+    maxError = std::max(maxError, volume.readError());
+    lossless = lossless && volume.replaced() == 0 && volume.readError() == 0;
+    areLabels = areLabels || volume.labels();
     addBook(codeBook);
 }
 

@@ -101,7 +101,7 @@ std::vector<Volume> readInput(const ConvertCommand& command, const std::filesyst
         input, reading,
         [&](Volume volume) {
             // The source says all that the codes do, and more.
-            if (volume.source) volume.codes.reset();
+            if (volume.source()) volume = volume.withoutCodes();
             volumes.push_back(std::move(volume));
         },
         listener);
@@ -120,8 +120,8 @@ ConversionStats convertFile(const CLI::App& app, const ConvertCommand& command,
     std::vector<Volume> volumes =
         readInput(command, files.input, partOf(listener, 0, kReadShare), complete);
     for (Volume& volume : volumes) {
-        if (labels) volume.labels = labels;
-        stats.add(volume, volume.codeBook.name());
+        if (labels) volume = volume.withLabels(labels);
+        stats.add(volume, volume.codeBook().name());
     }
 
     writeConverted(files, std::move(volumes), command.write, partOf(listener, kReadShare, 1),

@@ -134,13 +134,13 @@ bool isWhole(const std::string& type) {
 // Labels are whole numbers, and a label that is rounded is another one.
 void warnOfWholeNumbers(const Volume& volume, const DeltaFileEntry& entry,
                         const DeltaCommand& command, const Listener& listener) {
-    if (!isWhole(volume.type) || isOfCodes(volume)) return;
+    if (!isWhole(volume.type()) || isOfCodes(volume)) return;
     if (command.read.bits) listener.warn("--bits: has no effect on whole numbers");
     if (entry.lossless || !command.file.tolerance.isExact() || entry.maxError == 0) return;
-    if (volume.readError > 0) return;  // has been said
+    if (volume.readError() > 0) return;  // has been said
     const std::string why = command.file.codesOnly ? "more than 65536 different values of type "
                                                    : "some of the 65537 largest values of type ";
-    listener.warn("grid \"" + volume.name + "\": " + why + volume.type +
+    listener.warn("grid \"" + volume.name() + "\": " + why + volume.type() +
                   ", which are rounded by up to " + numberText(entry.maxError) +
                   " (--max-error 0 refuses)");
 }
@@ -183,7 +183,7 @@ ConversionStats takeDeltas(const CLI::App& app, const DeltaCommand& command,
                 remarks.warn("--bits: has no effect on deltas of codes, which keep their book");
             DeltaFileOptions writing = command.file;
             writing.pack = packs;
-            if (reading.bits && !isWhole(volume.type)) writing.codesOnly = true;
+            if (reading.bits && !isWhole(volume.type())) writing.codesOnly = true;
             const DeltaFileEntry entry = file.add(volume, writing, remarks);
             stats.add(volume, entry.codeBook);
             warnOfWholeNumbers(volume, entry, command, remarks);

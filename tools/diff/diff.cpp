@@ -103,7 +103,7 @@ Volume readOne(const std::filesystem::path& file, const std::optional<std::strin
     }
     Volume volume = readCompared(file, options, listener);
     // The volume's own values are all that is looked at.
-    if (volume.source) volume.codes.reset();
+    if (volume.source()) volume = volume.withoutCodes();
     return volume;
 }
 
@@ -115,17 +115,17 @@ GridDiff compareGrids(const DiffOptions& options, const GridPair& pair, bool pac
     diff.b = readOne(options.b, pair.b, optionsFor(options.b, options.a, options.read), packed,
                      stage(kReadA, kReadB));
     // What is packed is read while it is compared.
-    const bool areRead =
-        !diff.a.source || !diff.a.source->packed || !diff.b.source || !diff.b.source->packed;
+    const bool areRead = !diff.a.source() || !diff.a.source()->packed || !diff.b.source() ||
+                         !diff.b.source()->packed;
     CompareOptions compare = options.compare;
     compare.placeDigitsA = placeDigitsOf(options.a);
     compare.placeDigitsB = placeDigitsOf(options.b);
     diff.comparison = compareVolumes(diff.a, diff.b, compare, stage(areRead ? kReadB : 0, 1));
     diff.verdict = judge(diff.comparison, options.compare, options.limits);
     for (Volume* volume : {&diff.a, &diff.b}) {
-        volume->codes.reset();
-        volume->source.reset();
-        volume->histogram = {};
+        VolumeData rest = volume->withoutVoxels().data();
+        rest.histogram = {};
+        *volume = Volume(std::move(rest));
     }
     return diff;
 }

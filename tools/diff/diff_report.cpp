@@ -93,8 +93,8 @@ std::string placeText(const VolumeComparison& c) {
 // Of files that say nothing of places, whose voxels are of size 1 from the world's origin on.
 std::string assumedText(const GridDiff& grid) {
     const auto isAssumed = [](const Volume& volume) {
-        return !volume.hasBackground && volume.space.empty() &&
-               volume.worldFromIndex == glm::dmat4(1);
+        return !volume.hasBackground() && volume.space().empty() &&
+               volume.worldFromIndex() == glm::dmat4(1);
     };
     const bool a = isAssumed(grid.a);
     const bool b = isAssumed(grid.b);
@@ -106,7 +106,9 @@ std::string assumedText(const GridDiff& grid) {
 
 std::string activeText(const GridDiff& grid) {
     const std::uint64_t mismatch = grid.comparison.activeMismatch;
-    const auto count = [](const Volume& volume) { return countText(volume.activeCount, "voxel"); };
+    const auto count = [](const Volume& volume) {
+        return countText(volume.activeCount(), "voxel");
+    };
     if (mismatch == 0) return count(grid.a);
     return "A has " + count(grid.a) + ", B has " + count(grid.b) + "; " + std::to_string(mismatch) +
            " in one of them only";
@@ -114,7 +116,7 @@ std::string activeText(const GridDiff& grid) {
 
 std::string backgroundText(const GridDiff& grid) {
     const auto text = [](const Volume& volume) {
-        return volume.hasBackground ? numberText(volume.background) : "none";
+        return volume.hasBackground() ? numberText(volume.background()) : "none";
     };
     // Two 64-bit integers that differ may be the same number as doubles.
     const double error = grid.comparison.backgroundError;
@@ -134,23 +136,24 @@ std::string maxText(const GridDiff& grid) {
     const VolumeComparison& c = grid.comparison;
     if (c.maxError == 0) return "0";
     const glm::dvec3 at(c.maxAt);
-    const glm::dvec3 world(grid.a.worldFromIndex * glm::dvec4(at, 1));
+    const glm::dvec3 world(grid.a.worldFromIndex() * glm::dvec4(at, 1));
     return numberText(c.maxError) + " @ (" + numberText(at) + "), in the world (" +
            numberText(world) + "); values are " + c.valueTextA + " vs " + c.valueTextB;
 }
 
 std::string plainText(const GridDiff& grid, const CompareOptions& thresholds) {
     const VolumeComparison& c = grid.comparison;
-    std::string text = textLine("grid", agreement(shownName(grid.a.name), shownName(grid.b.name)));
+    std::string text =
+        textLine("grid", agreement(shownName(grid.a.name()), shownName(grid.b.name())));
     const bool isApart = c.shift != 0 || c.offset != glm::ivec3(0);
     text += textLine("transform", placeText(c) + (isApart ? assumedText(grid) : ""));
-    text += textLine("type", agreement(grid.a.type, grid.b.type));
-    text += textLine("class", agreement(grid.a.gridClass, grid.b.gridClass));
+    text += textLine("type", agreement(grid.a.type(), grid.b.type()));
+    text += textLine("class", agreement(grid.a.gridClass(), grid.b.gridClass()));
     text += textLine("background", backgroundText(grid));
     text += textLine("active", activeText(grid));
     if (!c.sizeEqual) {
         const std::string dims =
-            agreement(dimsText(grid.a.box.dims(), " x "), dimsText(grid.b.box.dims(), " x "));
+            agreement(dimsText(grid.a.box().dims(), " x "), dimsText(grid.b.box().dims(), " x "));
         text +=
             textLine("dims", dims + (c.offset == glm::ivec3(0) ? "" : ", from other voxels on"));
     }
@@ -201,8 +204,8 @@ Json toJson(const FileDiff& diff) {
     json["grids"] = Json::array();
     for (const GridDiff& grid : diff.grids) {
         const glm::ivec3& offset = grid.comparison.offset;
-        Json one = {{"name", grid.a.name},
-                    {"name_b", grid.b.name},
+        Json one = {{"name", grid.a.name()},
+                    {"name_b", grid.b.name()},
                     {"offset", {offset.x, offset.y, offset.z}}};
         one.update(toJson(grid.comparison, grid.verdict));
         json["grids"].push_back(one);

@@ -3,9 +3,8 @@
 // answers. HelperProcess (src/modules/helper_process.h) is the other end.
 #include <dlfcn.h>
 #include <fcntl.h>
-#include <signal.h>
+#include <poll.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -25,10 +24,33 @@ namespace {
 
 constexpr int kSocket = STDIN_FILENO;
 
+// The other end of the socket closes when its process ends, however that happens. Whoever waits for
+// a message sees that; a helper that is busy is told by SIGIO, which ends it. SIGIO also comes with
+// messages and with room for them, so it is asked for only while nobody sends any.
+void endWithParent(bool ends) {
+    ::fcntl(kSocket, F_SETFL, ends ? O_ASYNC : 0);
+    pollfd other{kSocket, POLLRDHUP, 0};
+    if (ends && ::poll(&other, 1, 0) != 0) ::_exit(0);
+}
+
+bool isWorking = false;
+
 bool sendMessage(HelperMessage::Kind kind, std::string_view text) {
+    endWithParent(false);
     const HelperMessage message{kind, text.size(), 0};
-    return sendBytes(kSocket, &message, sizeof message) &&
-           sendBytes(kSocket, text.data(), text.size());
+    const bool isSent = sendBytes(kSocket, &message, sizeof message) &&
+                        sendBytes(kSocket, text.data(), text.size());
+    endWithParent(isWorking);
+    return isSent;
+}
+
+bool doWork(HelperWork& work, std::string_view request, std::string& answer, HelperNote note) {
+    isWorking = true;
+    endWithParent(true);
+    const bool isDone = work(request, answer, note);
+    isWorking = false;
+    endWithParent(false);
+    return isDone;
 }
 
 std::string currentNote;
@@ -59,12 +81,6 @@ void sendComplaint() {
     ::_exit(0);
 }
 
-void endWithParent(pid_t parent) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    // It may have ended before it could be said.
-    if (::getppid() != parent) ::_exit(0);
-}
-
 // Some descriptors of the parent may be open here: those that others than this library have opened.
 void closeOthers() {
 #ifdef SYS_close_range
@@ -80,8 +96,13 @@ void replaceBy(int file, int descriptor) {
 
 // What is printed as an error is kept, for a module to look at.
 void printNowhere() {
-    replaceBy(::open("/dev/null", O_WRONLY), STDOUT_FILENO);
+    const int nowhere = ::open("/dev/null", O_WRONLY);
     const int errors = ::memfd_create("errors", 0);
+    if (nowhere < 0 || errors < 0) {
+        sendNote("no place for what libraries print");
+        ::_exit(1);
+    }
+    replaceBy(nowhere, STDOUT_FILENO);
     ::fcntl(errors, F_SETFL, O_APPEND);
     replaceBy(errors, STDERR_FILENO);
 }
@@ -120,9 +141,13 @@ void limitTime() {
 
 // Modules lie beside the program.
 HelperWork* loadWork(const char* program, const std::string& name) {
-    const std::filesystem::path folder = std::filesystem::canonical(program).parent_path();
-    void* const module =
-        ::dlopen((folder / ("helper_" + name + ".so")).c_str(), RTLD_NOW | RTLD_LOCAL);
+    const std::filesystem::path own = std::filesystem::canonical(program);
+    const std::filesystem::path file = own.parent_path() / ("helper_" + name + ".so");
+    if (!isTrusted(file, own)) {
+        sendNote("no module " + file.string());
+        ::_exit(1);
+    }
+    void* const module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     void* const work = module ? ::dlsym(module, "deltasplat_helper_work") : nullptr;
     if (work) return reinterpret_cast<HelperWork*>(work);
     const char* const why = ::dlerror();
@@ -133,19 +158,19 @@ HelperWork* loadWork(const char* program, const std::string& name) {
 bool serveRequest(HelperWork& work) {
     HelperMessage message;
     if (!receiveBytes(kSocket, &message, sizeof message)) return false;
+    limitTime();
+    limitMemory(message.mostMemory + message.bytes);
     std::string request(std::size_t(message.bytes), '\0');
     if (!receiveBytes(kSocket, request.data(), request.size())) return false;
-    limitTime();
-    limitMemory(message.mostMemory);
     (void)!::ftruncate(STDERR_FILENO, 0);
     currentNote.clear();
     std::string answer;
-    return work(request, answer, keepNote) && sendMessage(HelperMessage::kDone, answer);
+    return doWork(work, request, answer, keepNote) && sendMessage(HelperMessage::kDone, answer);
 }
 
-[[noreturn]] void serve(const char* program, const char* parent, const char* name) {
+[[noreturn]] void serve(const char* program, const char* name) {
     std::set_terminate(endHelper);
-    endWithParent(std::atoi(parent));
+    ::fcntl(kSocket, F_SETOWN, ::getpid());
     closeOthers();
     printNowhere();
     keepWithinLimits();
@@ -163,8 +188,8 @@ bool serveRequest(HelperWork& work) {
 }  // namespace deltasplat
 
 int main(int count, char** arguments) try {
-    constexpr int kArguments = 3;
-    if (count == kArguments) deltasplat::serve(arguments[0], arguments[1], arguments[2]);
+    constexpr int kArguments = 2;
+    if (count == kArguments) deltasplat::serve(arguments[0], arguments[1]);
     std::fputs("deltasplat-helper: deltasplat starts it, nobody else needs to\n", stderr);
     return 2;
 } catch (...) {

@@ -23,15 +23,16 @@ std::vector<Slot> seenSlots(const GridReport& report, const DescribeOptions& opt
         return *classify(volume, optics, volume.voxelSize()[axis]).slots;
     }
     if (!report.backgroundGuess) return {};
-    return slotsWithout(volume.codeBook, *report.backgroundGuess);
+    return slotsWithout(volume.codeBook(), *report.backgroundGuess);
 }
 
 std::string visibleText(const GridReport& report, const DescribeOptions& options) {
     if (options.transferFunction) return "not clear under " + options.transferFunctionFile;
     if (!report.backgroundGuess) return "all voxels";
     const std::string value = numberText(*report.backgroundGuess);
-    return report.volume.hasBackground ? "active voxels other than the background " + value
-                                       : "voxels other than " + value + ", the guessed background";
+    return report.volume.hasBackground()
+               ? "active voxels other than the background " + value
+               : "voxels other than " + value + ", the guessed background";
 }
 
 }  // namespace
@@ -46,13 +47,12 @@ GridReport describeVolume(Volume volume, const DescribeOptions& options, bool pl
         const std::vector<Slot> seen = seenSlots(report, options, axis);
         report.stamps[axis] = predictStamps(report.volume, axis, seen);
         if (!plot) continue;
-        const int slices = report.volume.box.dims()[axis];
+        const int slices = report.volume.box().dims()[axis];
         report.columns[axis] =
             countDeltasPerSlice(report.volume, axis, seen, slicesPerColumn(slices));
     }
     // The codes are counted, and with the source the largest thing in memory.
-    report.volume.codes.reset();
-    report.volume.source.reset();
+    report.volume = report.volume.withoutVoxels();
     return report;
 }
 

@@ -145,16 +145,16 @@ DescribeOptions describeOptions(const InfoOptions& options, const Listener& list
 
 SlicePlot plotOf(const std::string& file, const GridReport& report) {
     const Volume& volume = report.volume;
-    const glm::ivec3 dims = volume.box.dims();
+    const glm::ivec3 dims = volume.box().dims();
     SlicePlot plot;
     plot.title = std::filesystem::path(file).filename().string();
     // A raw volume has no name but its file's.
-    if (volume.hasBackground) plot.title += ", " + volume.name;
+    if (volume.hasBackground()) plot.title += ", " + volume.name();
     if (!report.entry.description.empty()) plot.title += ", " + report.entry.description;
     if (report.entry.volumes > 1) plot.title += ", volume " + std::to_string(report.volumeIndex);
     plot.title += ", " + dimsText(dims, " x ");
     plot.visible = "visible: " + report.visible;
-    plot.box = volume.box;
+    plot.box = volume.box();
     plot.columns = report.columns;
     return plot;
 }

@@ -30,9 +30,9 @@ Json histogramJson(const Volume& volume) {
 }
 
 Json labelsJson(const Volume& volume) {
-    if (!volume.labels) return {};
+    if (!volume.labels()) return {};
     Json labels = Json::array();
-    for (const LabelEntry& label : volume.labels->entries) {
+    for (const LabelEntry& label : volume.labels()->entries) {
         const glm::dvec3 rgb = label.rgb.value_or(glm::dvec3(0));
         labels.push_back({{"value", label.value},
                           {"name", label.name},
@@ -68,8 +68,8 @@ Json toJson(const DeltaOrigin& origin) {
 
 // How many active voxels have the guessed value; of a background nobody counts them.
 Json guessedVoxels(const GridReport& report) {
-    if (report.volume.hasBackground || !report.backgroundGuess) return {};
-    return report.volume.mostFrequent->count;
+    if (report.volume.hasBackground() || !report.backgroundGuess) return {};
+    return report.volume.mostFrequent()->count;
 }
 
 Json toJson(const GridReport& report, const Json& transferFunction) {
@@ -82,37 +82,38 @@ Json toJson(const GridReport& report, const Json& transferFunction) {
                                   {"comparability", comparability(report, axis)}};
         stamps[kAxisNames[axis]] = toJson(report.stamps[axis]);
     }
-    return {{"name", volume.name},
-            {"type", volume.type},
-            {"class", volume.gridClass},
-            {"series", report.entry.series ? Json(*report.entry.series) : Json()},
-            {"description", report.entry.description},
-            {"volume", report.volumeIndex},
-            {"volumes", report.entry.volumes},
-            {"dims", toJson(volume.box.dims())},
-            {"bbox", {toJson(volume.box.min), toJson(volume.box.max)}},
-            {"voxel_size", toJson(volume.voxelSize())},
-            {"active", volume.activeCount},
-            {"range", {volume.valueMin, volume.valueMax}},
-            {"background", volume.background},
-            {"background_guess", report.backgroundGuess ? Json(*report.backgroundGuess) : Json()},
-            {"background_voxels", guessedVoxels(report)},
-            {"labels", labelsJson(volume)},
-            {"percentiles", percentilesJson(volume)},
-            {"histogram", histogramJson(volume)},
-            {"code_book", volume.codeBook.name()},
-            {"code_error",
-             {{"absolute", volume.codeError.absolute}, {"relative", volume.codeError.relative}}},
-            {"delta", volume.origin ? toJson(*volume.origin) : Json()},
-            {"axes", axes},
-            {"transfer_function", transferFunction},
-            {"stamps", stamps}};
+    return {
+        {"name", volume.name()},
+        {"type", volume.type()},
+        {"class", volume.gridClass()},
+        {"series", report.entry.series ? Json(*report.entry.series) : Json()},
+        {"description", report.entry.description},
+        {"volume", report.volumeIndex},
+        {"volumes", report.entry.volumes},
+        {"dims", toJson(volume.box().dims())},
+        {"bbox", {toJson(volume.box().min), toJson(volume.box().max)}},
+        {"voxel_size", toJson(volume.voxelSize())},
+        {"active", volume.activeCount()},
+        {"range", {volume.valueMin(), volume.valueMax()}},
+        {"background", volume.background()},
+        {"background_guess", report.backgroundGuess ? Json(*report.backgroundGuess) : Json()},
+        {"background_voxels", guessedVoxels(report)},
+        {"labels", labelsJson(volume)},
+        {"percentiles", percentilesJson(volume)},
+        {"histogram", histogramJson(volume)},
+        {"code_book", volume.codeBook().name()},
+        {"code_error",
+         {{"absolute", volume.codeError().absolute}, {"relative", volume.codeError().relative}}},
+        {"delta", volume.origin() ? toJson(*volume.origin()) : Json()},
+        {"axes", axes},
+        {"transfer_function", transferFunction},
+        {"stamps", stamps}};
 }
 
 }  // namespace
 
 double comparability(const GridReport& report, int axis) {
-    const double voxels = double(voxelsOf(report.volume.box));
+    const double voxels = double(voxelsOf(report.volume.box()));
     return voxels > 0 ? 1 - double(report.counts[axis].deltas) / voxels : 1;
 }
 

@@ -53,15 +53,16 @@ std::string axisText(const GridReport& report, int axis) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4f", comparability(report, axis));
     return "comparability " + std::string(text) + " as data, " + std::to_string(counts.deltas) +
-           " deltas (" + percent(double(counts.deltas), double(voxelsOf(report.volume.box))) + ")";
+           " deltas (" + percent(double(counts.deltas), double(voxelsOf(report.volume.box()))) +
+           ")";
 }
 
 std::string backgroundText(const GridReport& report) {
     const Volume& volume = report.volume;
-    if (volume.hasBackground) return valueText(volume.background);
+    if (volume.hasBackground()) return valueText(volume.background());
     if (!report.backgroundGuess) return "none that is obvious";
-    return valueText(*report.backgroundGuess) +
-           ", a guess: " + percent(double(volume.mostFrequent->count), double(volume.activeCount)) +
+    return valueText(*report.backgroundGuess) + ", a guess: " +
+           percent(double(volume.mostFrequent()->count), double(volume.activeCount())) +
            " of the voxels have it";
 }
 
@@ -77,18 +78,18 @@ std::string deltaText(const DeltaOrigin& origin) {
 }
 
 std::string codeBookText(const Volume& volume) {
-    const CodeError& error = volume.codeError;
-    if (error.absolute == 0) return volume.codeBook.name();
+    const CodeError& error = volume.codeError();
+    if (error.absolute == 0) return volume.codeBook().name();
     char share[32];
     std::snprintf(share, sizeof share, "%.3g %%", 100 * error.relative);
-    return volume.codeBook.name() + ", largest error " + numberText(error.absolute) +
+    return volume.codeBook().name() + ", largest error " + numberText(error.absolute) +
            (error.relative > 0 ? ", " + std::string(share) + " of a value" : "");
 }
 
 std::string labelsText(const Volume& volume) {
-    if (!volume.labels) return "";
+    if (!volume.labels()) return "";
     constexpr std::size_t kMost = 8;
-    const std::vector<LabelEntry>& entries = volume.labels->entries;
+    const std::vector<LabelEntry>& entries = volume.labels()->entries;
     std::string text;
     for (std::size_t i = 0; i < std::min(kMost, entries.size()); ++i) {
         text += (i == 0 ? "" : ", ") + std::to_string(entries[i].value) +
@@ -105,7 +106,7 @@ std::string valuesText(const Volume& volume) {
         shares += (shares.empty() ? "" : ", ") + std::to_string(share) +
                   " %: " + valueText(percentileValue(volume, share));
     }
-    return textLine("range", valueText(volume.valueMin) + " to " + valueText(volume.valueMax)) +
+    return textLine("range", valueText(volume.valueMin()) + " to " + valueText(volume.valueMax())) +
            textLine("percentiles", shares);
 }
 
@@ -129,12 +130,12 @@ std::string histogramText(const Volume& volume) {
         from.push_back(edge);
         longest = std::max(longest, from.back().size());
         // Bins of whole numbers may go on behind the largest value, and one value has one bin.
-        if (width == 0 || histogram.low + width * double(i + 1) > volume.valueMax) break;
+        if (width == 0 || histogram.low + width * double(i + 1) > volume.valueMax()) break;
     }
     std::string text = textLine(
         "histogram", "values from; share of the active voxels; 12 # more: ten times as many");
     for (std::size_t i = 0; i < from.size(); ++i) {
-        const double share = double(histogram.counts[i]) / double(volume.activeCount);
+        const double share = double(histogram.counts[i]) / double(volume.activeCount());
         char number[32];
         std::snprintf(number, sizeof number, "%10.4f %%  ", 100 * share);
         text += "    " + padded(from[i], std::max<std::size_t>(longest, 10)) + number +
@@ -167,12 +168,12 @@ std::string placeText(const Volume& volume) {
     std::string directions;
     for (int axis = 0; axis < 3; ++axis) {
         directions += (axis > 0 ? ", " : "") + std::string(1, "ijk"[axis]) + " " +
-                      directionText(place, volume.space, axis);
+                      directionText(place, volume.space(), axis);
     }
     std::string text = textLine("world box", "(" + toText(place.box.min, ", ") + ") to (" +
                                                  toText(place.box.max, ", ") + ")");
     text += textLine("origin", "(" + toText(place.origin, ", ") + ")");
-    if (!volume.space.empty()) text += textLine("space", spaceText(volume.space));
+    if (!volume.space().empty()) text += textLine("space", spaceText(volume.space()));
     text += textLine("directions", directions);
     return text +
            textLine("front view", "target (" + toText(camera.targetWorld, ", ") +
@@ -195,20 +196,21 @@ std::string choiceText(const GridReport& report) {
 std::string gridText(const GridReport& report) {
     const Volume& v = report.volume;
     std::string text =
-        textLine("grid", v.name) + textLine("type", v.type) + textLine("class", v.gridClass);
+        textLine("grid", v.name()) + textLine("type", v.type()) + textLine("class", v.gridClass());
     text += choiceText(report);
-    text += textLine("dims", toText(v.box.dims(), " x "));
+    text += textLine("dims", toText(v.box().dims(), " x "));
     text += textLine("box", v.empty() ? "empty"
-                                      : "(" + toText(v.box.min, ", ") + ") to (" +
-                                            toText(v.box.max, ", ") + ")");
-    text += textLine("voxel size",
-                     sizeText(v.voxelSize()) + (v.lengthUnit.empty() ? "" : " " + v.lengthUnit)) +
+                                      : "(" + toText(v.box().min, ", ") + ") to (" +
+                                            toText(v.box().max, ", ") + ")");
+    text += textLine("voxel size", sizeText(v.voxelSize()) +
+                                       (v.lengthUnit().empty() ? "" : " " + v.lengthUnit())) +
             placeText(v);
-    text += textLine("active", std::to_string(v.activeCount) + " (" +
-                                   percent(double(v.activeCount), double(voxelsOf(v.box))) + ")");
+    text +=
+        textLine("active", std::to_string(v.activeCount()) + " (" +
+                               percent(double(v.activeCount()), double(voxelsOf(v.box()))) + ")");
     text += valuesText(v) + labelsText(v);
     text += textLine("background", backgroundText(report)) + textLine("code book", codeBookText(v));
-    if (v.origin) text += textLine("delta grid", deltaText(*v.origin));
+    if (v.origin()) text += textLine("delta grid", deltaText(*v.origin()));
     for (int axis = 0; axis < 3; ++axis) text += textLine(alongText(axis), axisText(report, axis));
     return text + stampsText(report) + histogramText(v);
 }

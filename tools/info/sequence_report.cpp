@@ -34,11 +34,11 @@ struct CommonGrid {
         if (volume.empty()) return;
         if (filled == 0 || lastFilled != number) ++filled;
         lastFilled = number;
-        min = std::min(min, volume.valueMin);
-        max = std::max(max, volume.valueMax);
+        min = std::min(min, volume.valueMin());
+        max = std::max(max, volume.valueMax());
         const WorldBox one = placeOf(volume).box;
         box = {glm::min(box.min, one.min), glm::max(box.max, one.max)};
-        mostActive = std::max(mostActive, std::uint64_t(volume.activeCount));
+        mostActive = std::max(mostActive, std::uint64_t(volume.activeCount()));
     }
 };
 
@@ -48,7 +48,7 @@ std::vector<CommonGrid> commonGrids(const std::vector<FileReport>& reports) {
     for (std::size_t number = 0; number < reports.size(); ++number) {
         for (const GridReport& grid : reports[number].grids) {
             // A volume that has no name but its file's is the same in all of them.
-            const std::string name = grid.volume.hasBackground ? grid.volume.name : "";
+            const std::string name = grid.volume.hasBackground() ? grid.volume.name() : "";
             auto found = std::find_if(grids.begin(), grids.end(),
                                       [&](const CommonGrid& one) { return one.name == name; });
             if (found == grids.end()) found = grids.insert(grids.end(), CommonGrid{name});

@@ -181,16 +181,16 @@ ReadOptions maskOptions(const FileAndName& mask, const ReadOptions& read) {
 // Where either file says nothing of a place, voxels belong together by their numbers.
 void placeMask(const std::filesystem::path& input, const Volume& volume,
                const std::filesystem::path& file, Volume& mask) {
-    const bool isDense = !volume.hasBackground && !mask.hasBackground;
+    const bool isDense = !volume.hasBackground() && !mask.hasBackground();
     if (!isDense || !(saysNoPlace(input) || saysNoPlace(file))) return;
-    if (mask.box != volume.box) {
+    if (mask.box() != volume.box()) {
         throw Error(ErrorCode::kInput, "--mask",
-                    file.string() + " of " + dimsText(mask.box.dims()) + " voxels",
-                    dimsText(volume.box.dims()) +
+                    file.string() + " of " + dimsText(mask.box().dims()) + " voxels",
+                    dimsText(volume.box().dims()) +
                         ", as the volume has, for the files do not say "
                         "where both lie");
     }
-    mask.worldFromIndex = volume.worldFromIndex;
+    mask = mask.withPlace(volume.worldFromIndex(), volume.space(), volume.lengthUnit());
 }
 
 Volume readMask(const std::filesystem::path& input, const Volume& volume, const CutChoice& choice,

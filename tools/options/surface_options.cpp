@@ -57,10 +57,10 @@ std::optional<Surface> SurfaceChoice::of(const Volume& volume) const {
     }
     if (isLevelSet(volume) && (asked || ofLevelSets)) return surface;
     if (!asked) return {};
-    throw Error(
-        ErrorCode::kUsage, "--surface",
-        volume.gridClass == "unknown" ? "values that are no distances" : "a " + volume.gridClass,
-        "a level set, or --isovalue V");
+    throw Error(ErrorCode::kUsage, "--surface",
+                volume.gridClass() == "unknown" ? "values that are no distances"
+                                                : "a " + volume.gridClass(),
+                "a level set, or --isovalue V");
 }
 
 void addSurfaceOptions(CLI::App& app, SurfaceChoice& choice,

@@ -93,7 +93,7 @@ std::vector<ImageChannel> withEmptyMattes(const MediumChoice& medium, const Opti
                                           std::vector<ImageChannel> channels) {
     std::vector<std::string> shown;
     for (const MediumPart& part : optics.parts) {
-        if (part.kind == MediumPart::Kind::kAbsorption) shown.push_back(part.volume->name);
+        if (part.kind == MediumPart::Kind::kAbsorption) shown.push_back(part.volume->name());
     }
     const std::vector<std::string> asked = otherFogs(medium);
     const auto isFirst = [](const ImageChannel& one) { return one.name == "matte_1"; };

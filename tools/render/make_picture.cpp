@@ -68,15 +68,15 @@ void finishPicture(const RenderCommand& command, const Volume& volume, const Opt
         legend = pictureLegend(command, volume, optics, window);
     }
     if (!command.annotations.any()) return;
-    if (command.annotations.scaleBar && volume.lengthUnit.empty() && !volume.space.empty())
+    if (command.annotations.scaleBar && volume.lengthUnit().empty() && !volume.space().empty())
         listener.warn(
             "--scale-bar: the file names no unit of length; millimetres are meant, as is usual of "
             "a "
             "patient's space");
-    const bool isMillimetres = volume.lengthUnit.empty() && !volume.space.empty();
+    const bool isMillimetres = volume.lengthUnit().empty() && !volume.space().empty();
     annotate(
-        layOut(command.annotations, result.camera, volume.space,
-               isMillimetres ? "mm" : volume.lengthUnit, legend, inkFor(result.image), listener),
+        layOut(command.annotations, result.camera, volume.space(),
+               isMillimetres ? "mm" : volume.lengthUnit(), legend, inkFor(result.image), listener),
         result.image);
 }
 
@@ -177,8 +177,8 @@ void showScene(const RenderCommand& command, const ReadScene& scene, const Seque
     }
     boundOver(picture.background, result.stats);
     ImageFileOptions image = imageOptions(command, codesOf(volume), result, session);
-    image.space = volume.space;
-    image.lengthUnit = volume.lengthUnit;
+    image.space = volume.space();
+    image.lengthUnit = volume.lengthUnit();
     const Listener writing = partOf(listener, kRenderShare, 1);
     warnOfDepths(command.channels, options.optics, writing);
     AovOptions aovOptions = command.aovOptions;
@@ -247,10 +247,10 @@ MadePicture makePicture(const CLI::App& app, const RenderCommand& command, const
     warnOfDetector(options.camera, volume, reading);
     warnOfClipping(picture, part.frame, volume, reading);
     made.times.read = secondsSince(beginRead);
-    made.codeBook = "code book " + volume.codeBook.name() + ", largest error " +
-                    codeErrorText(volume.codeError) + "\n";
-    made.facts = {volume.name, volume.box.dims(), glm::dvec2(volume.valueMin, volume.valueMax),
-                  volume.empty()};
+    made.codeBook = "code book " + volume.codeBook().name() + ", largest error " +
+                    codeErrorText(volume.codeError()) + "\n";
+    made.facts = {volume.name(), volume.box().dims(),
+                  glm::dvec2(volume.valueMin(), volume.valueMax()), volume.empty()};
 
     const Listener showing = partOf(listener, kReadShare, 1);
     std::optional<Preview> preview;

@@ -22,7 +22,7 @@ namespace {
 // Something to see even where all points lie at one value.
 glm::dvec2 widened(glm::dvec2 range, const Volume& volume) {
     if (range.x < range.y) return range;
-    range = {std::min(range.x, volume.valueMin), std::max(range.y, volume.valueMax)};
+    range = {std::min(range.x, volume.valueMin()), std::max(range.y, volume.valueMax())};
     return range.x < range.y ? range : glm::dvec2(range.x - 0.5, range.x + 0.5);
 }
 
@@ -75,8 +75,8 @@ ValueScale functionScale(const Volume& volume, const Optics& optics, bool withOp
 // The names that a table gives labels, or without one the file.
 std::map<int, std::string> namesOf(const std::filesystem::path& table, const Volume& volume) {
     std::map<int, std::string> names = labelNames(table);
-    if (!names.empty() || !volume.labels) return names;
-    for (const LabelEntry& label : volume.labels->entries) {
+    if (!names.empty() || !volume.labels()) return names;
+    for (const LabelEntry& label : volume.labels()->entries) {
         if (!label.name.empty() && std::abs(label.value) < 1000000000)
             names[int(label.value)] = label.name;
     }
@@ -90,9 +90,9 @@ std::vector<LabelColor> labelsOf(const Volume& volume, const Optics& optics, boo
     const ColorCurve curve(function);
     const glm::dvec2 unit = unitRange(volume, optics);
     std::map<double, LabelColor> labels;
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-        if (volume.histogram[code] == 0) continue;
-        const double value = volume.codeBook.valueOf(Code(code));
+    for (std::size_t code = 0; code < volume.histogram().size(); ++code) {
+        if (volume.histogram()[code] == 0) continue;
+        const double value = volume.codeBook().valueOf(Code(code));
         const double x = (value - unit.x) / (unit.y - unit.x);
         if (withOpacity && !(function.opacityAt(x) > 0)) continue;
         const auto name = std::abs(value) < 1e9 ? names.find(int(value)) : names.end();
@@ -109,7 +109,7 @@ std::vector<LabelColor> labelsOf(const Volume& volume, const Optics& optics, boo
 Legend pictureLegend(const RenderCommand& command, const Volume& volume, const Optics& optics,
                      const std::optional<glm::dvec2>& window) {
     Legend legend;
-    legend.title = volume.name + (isHounsfield(volume) ? " (HU)" : "");
+    legend.title = volume.name() + (isHounsfield(volume) ? " (HU)" : "");
     const bool withOpacity = command.picture.render.mode == Mode::kComposite;
     if (window) {
         legend.key = greys(*window);

@@ -44,7 +44,7 @@ std::optional<glm::dmat4> worldFromPixel(const CameraOptions& options, const Cam
 }  // namespace
 
 CodeText codesOf(const Volume& volume) {
-    return {volume.codeBook.name(), codeErrorText(volume.codeError)};
+    return {volume.codeBook().name(), codeErrorText(volume.codeError())};
 }
 
 Metadata commonMetadata(const Session& session) {

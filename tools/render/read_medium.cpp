@@ -66,7 +66,7 @@ class MediumReader {
         whole_ = look_ ? &look_->standIn(grid, *volume) : volume.get();
         isDark_ = whole_->empty();
         if (volume->empty()) return {};
-        fit_ = fitOf(*volume, volume_.worldFromIndex);
+        fit_ = fitOf(*volume, volume_.worldFromIndex());
         warnOfPlace(option, *volume);
         return volume;
     }
@@ -103,12 +103,12 @@ class MediumReader {
                                       const std::shared_ptr<const Volume>& part) {
         const CutChoice& parts = picture_.parts;
         if (!parts.cuts()) return part;
-        if (fit_ != PartFit::kSame || part->worldFromIndex != volume_.worldFromIndex) {
+        if (fit_ != PartFit::kSame || part->worldFromIndex() != volume_.worldFromIndex()) {
             throw Error(ErrorCode::kUsage, option,
-                        "grid " + part->name +
+                        "grid " + part->name() +
                             ", whose voxels are others than those "
                             "of " +
-                            volume_.name + ", which is cut",
+                            volume_.name() + ", which is cut",
                         "grids of the same voxels, or nothing cut");
         }
         try {
@@ -133,10 +133,10 @@ class MediumReader {
         optics.range = range;
         if (optics.transferFunction.categorical && fit_ != PartFit::kSame) {
             throw Error(ErrorCode::kUsage, option,
-                        "labels of grid " + part.volume->name +
+                        "labels of grid " + part.volume->name() +
                             ", whose voxels are "
                             "others than those of " +
-                            volume_.name,
+                            volume_.name(),
                         "labels of the same voxels, for between two is a third");
         }
         if (const Preset* preset = parseTransferFunction(given).preset)
@@ -150,8 +150,8 @@ class MediumReader {
     // Says how kelvin were made of values that are none. A sequence must not change its mind with
     // its hottest voxel: only values that can hardly be kelvin of anything are scaled.
     void setKelvin(const std::string& option, const std::string& grid, MediumPart& part) {
-        const double most = whole_->valueMax;
-        const std::string values = "values of " + grid + ", " + numberText(whole_->valueMin) +
+        const double most = whole_->valueMax();
+        const std::string values = "values of " + grid + ", " + numberText(whole_->valueMin()) +
                                    " to " + numberText(most) + ", ";
         if (const auto& kelvin = picture_.medium.kelvin) {
             part.kelvinScale = kelvin->x;
@@ -160,7 +160,7 @@ class MediumReader {
             part.kelvinScale = kKelvinOfOne;
             listener_.warn(option + ": " + values + "seem to be no kelvin; 1 is taken for " +
                            numberText(kKelvinOfOne) + " K (--temperature-scale)");
-        } else if (whole_->valueMin < 0) {
+        } else if (whole_->valueMin() < 0) {
             listener_.warn(option + ": " + values +
                            "are taken for kelvin, of which there are none below 0; "
                            "--temperature-scale 1,273.15 takes degrees Celsius");
@@ -179,20 +179,20 @@ class MediumReader {
 
     // One line where voxels are not the volume's.
     void warnOfPlace(const std::string& option, const Volume& part) {
-        const WorldBox own = worldBox(part.box, part.worldFromIndex);
-        const WorldBox other = worldBox(volume_.box, volume_.worldFromIndex);
+        const WorldBox own = worldBox(part.box(), part.worldFromIndex());
+        const WorldBox other = worldBox(volume_.box(), volume_.worldFromIndex());
         const bool isApart = glm::any(glm::greaterThan(own.min, other.max)) ||
                              glm::any(glm::greaterThan(other.min, own.max));
         if (isApart && !volume_.empty()) {
-            listener_.warn(option + ": grid " + part.name + " lies from " + numberText(own.min) +
-                           " to " + numberText(own.max) + " and nowhere in " + volume_.name +
+            listener_.warn(option + ": grid " + part.name() + " lies from " + numberText(own.min) +
+                           " to " + numberText(own.max) + " and nowhere in " + volume_.name() +
                            ", which lies from " + numberText(other.min) + " to " +
                            numberText(other.max));
         }
         if (fit_ == PartFit::kSame) return;
         listener_.warn(
-            option + ": grid " + part.name + " has voxels of " + numberText(part.voxelSize()) +
-            ", " + volume_.name + " of " + numberText(volume_.voxelSize()) +
+            option + ": grid " + part.name() + " has voxels of " + numberText(part.voxelSize()) +
+            ", " + volume_.name() + " of " + numberText(volume_.voxelSize()) +
             (fit_ == PartFit::kFiner ? ": the mean of those that fall into one of these is shown"
                                      : ", or lies between these: read between them"));
     }
@@ -229,14 +229,14 @@ void readColors(const std::string& name, const std::vector<VolumeEntry>& entries
     for (std::size_t c = 0; c < 3; ++c) {
         grids[c] = reader.read(kOption, names[c]);
         if (!grids[c]) return;
-        if (grids[c]->valueMax > kBrightestColor) {
+        if (grids[c]->valueMax() > kBrightestColor) {
             listener.warn(std::string(kOption) + ": colours of " + names[c] + " reach " +
-                          numberText(grids[c]->valueMax) +
+                          numberText(grids[c]->valueMax()) +
                           "; what is more than 16 is taken for it");
         }
-        if (grids[c]->valueMin >= 0) continue;
-        throw Error(ErrorCode::kInput, kOption, names[c] + " of " + numberText(grids[c]->valueMin),
-                    "colours of at least 0");
+        if (grids[c]->valueMin() >= 0) continue;
+        throw Error(ErrorCode::kInput, kOption,
+                    names[c] + " of " + numberText(grids[c]->valueMin()), "colours of at least 0");
     }
     for (auto& grid : grids) {
         grid = reader.cut(kOption, grid);

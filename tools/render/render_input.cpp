@@ -24,9 +24,9 @@ namespace {
 void warnOfOtherData(const Preset& preset, const Volume& volume, const Listener& listener) {
     if (volume.empty()) return;
     const std::string values =
-        "values from " + numberText(volume.valueMin) + " to " + numberText(volume.valueMax);
+        "values from " + numberText(volume.valueMin()) + " to " + numberText(volume.valueMax());
     // Around whatever is scanned is air, and in it fat.
-    if (preset.values == Preset::Values::kHounsfield && volume.valueMin >= 0) {
+    if (preset.values == Preset::Values::kHounsfield && volume.valueMin() >= 0) {
         listener.warn("--tf: " + preset.name + " is for Hounsfield units (air -1000, water 0); " +
                       values + " seem to be others");
     }
@@ -39,7 +39,7 @@ void warnOfOtherData(const Preset& preset, const Volume& volume, const Listener&
         listener.warn("--tf: " + preset.name + " is for whole numbers, and " + values +
                       " lie between, such as " + numberText(*broken));
     }
-    if (volume.valueMax > kLargestPresetLabel) {
+    if (volume.valueMax() > kLargestPresetLabel) {
         listener.warn("--tf: " + preset.name + " has colours for 1 to " +
                       std::to_string(kLargestPresetLabel) + ", and of the " + values +
                       " those that are more are clear");
@@ -61,7 +61,7 @@ std::optional<Shading> shadingOf(const PictureOptions& picture, const Volume& vo
     if (picture.render.mode != Mode::kComposite || isFog(picture)) return {};
     const bool isScan = preset && preset->values == Preset::Values::kHounsfield;
     const bool byValue = picture.render.optics.colorBy == ColorBy::kValue;
-    return picture.shading.of(byValue && (isScan || isSurface || volume.fromLevelSet));
+    return picture.shading.of(byValue && (isScan || isSurface || volume.fromLevelSet()));
 }
 
 // What is asked for may not be of two kinds.
@@ -130,11 +130,11 @@ void checkEmissionLights(const PictureOptions& picture) {
 
 // Where values are all on one side, there is nothing to see but where the volume ends.
 void warnOfNoSurface(const Volume& volume, double isovalue, const Listener& listener) {
-    double low = volume.valueMin;
-    double high = volume.valueMax;
-    if (volume.hasBackground) {
-        low = std::min(low, volume.background);
-        high = std::max(high, volume.background);
+    double low = volume.valueMin();
+    double high = volume.valueMax();
+    if (volume.hasBackground()) {
+        low = std::min(low, volume.background());
+        high = std::max(high, volume.background());
     }
     const bool isBelow = isLevelSet(volume);  // inside of a surface
     const bool isAllInside = isBelow ? high <= isovalue : low >= isovalue;
@@ -183,7 +183,7 @@ RenderOptions readOptics(const PictureOptions& picture, const Listener& listener
 }
 
 glm::dvec3 upOf(const PictureOptions& picture, const Volume& volume) {
-    const glm::dvec3 up = volume.space.empty() ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+    const glm::dvec3 up = volume.space().empty() ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
     if (picture.upWorld) return *picture.upWorld;
     return picture.render.camera.up.value_or(up);
 }
@@ -267,9 +267,9 @@ void fitOptics(const std::filesystem::path& input, const PictureOptions& picture
         if (isOpen && !isWhole) options.optics.range = defaultRange(volume);
     }
     // Labels that a file gives colours have those.
-    if (preset && preset->name == kLabelPreset && volume.labels)
+    if (preset && preset->name == kLabelPreset && volume.labels())
         options.optics.transferFunction =
-            withColors(options.optics.transferFunction, *volume.labels);
+            withColors(options.optics.transferFunction, *volume.labels());
     options.optics.transferFunction =
         changeLabels(options.optics.transferFunction, picture.parts.labels);
     const bool saysTable = !picture.transferFunction.empty();
@@ -341,7 +341,7 @@ Volume readToRender(const std::filesystem::path& input, const PictureOptions& pi
     Volume volume = placed(
         look ? look->sequence.read(input, read, listener) : readVolume(input, read, listener),
         picture, {{}, listener.warning});
-    if (measuresMillimetres(picture.render) && volume.lengthUnit.empty()) {
+    if (measuresMillimetres(picture.render) && volume.lengthUnit().empty()) {
         listener.warn(input.string() + ": names no unit of length; " +
                       (picture.render.mode == Mode::kDrr ? "--mode drr" : "--sid") +
                       " takes its lengths for millimetres");

@@ -457,8 +457,8 @@ void warnOfDetector(const CameraOptions& options, const Volume& volume, const Li
     const Camera camera = makeCamera(options, volume);
     double farthest = 0;
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec4 index(cornerOf(volume.box, corner), 1);
-        const glm::dvec3 away = glm::dvec3(volume.worldFromIndex * index) - camera.eyeWorld();
+        const glm::dvec4 index(cornerOf(volume.box(), corner), 1);
+        const glm::dvec3 away = glm::dvec3(volume.worldFromIndex() * index) - camera.eyeWorld();
         farthest = std::max(farthest, glm::dot(away, camera.direction));
     }
     const double beyond = farthest - *options.sourceToDetectorWorld;

@@ -53,17 +53,20 @@ bool measuresMillimetres(const RenderOptions& render) {
     return render.mode == Mode::kDrr || render.camera.sourceToDetectorWorld.has_value();
 }
 
-Volume placed(Volume volume, const PictureOptions& picture, const Listener& listener) {
+Volume placed(const Volume& volume, const PictureOptions& picture, const Listener& listener) {
     const RenderOptions& render = picture.render;
-    const double millimetres = millimetresIn(volume.lengthUnit);
+    const double millimetres = millimetresIn(volume.lengthUnit());
+    glm::dmat4 place = volume.worldFromIndex();
+    std::string unit = volume.lengthUnit();
     if (measuresMillimetres(render) && millimetres > 0 && millimetres != 1) {
-        listener.warn(volume.name + ": lengths are in " + volume.lengthUnit +
+        listener.warn(volume.name() + ": lengths are in " + unit +
                       ", and are turned into millimetres, as are those of all options");
-        scaleLengths(volume.worldFromIndex, millimetres);
-        volume.lengthUnit = "mm";
+        scaleLengths(place, millimetres);
+        unit = "mm";
     }
-    volume.worldFromIndex = picture.worldFromInput * volume.worldFromIndex;
-    return volume;
+    place = picture.worldFromInput * place;
+    requirePlacement(volume.name(), "a place in the scene", place);
+    return volume.withPlace(place, volume.space(), unit);
 }
 
 void applyScene(const CLI::App& app, const std::vector<int>& frames, RenderCommand& command,

@@ -33,6 +33,6 @@ bool measuresMillimetres(const RenderOptions& render);
 
 /// Moves a volume that was read to where a scene has it. Where options are in millimetres, its
 /// world is too, if its unit is known, which is said.
-Volume placed(Volume volume, const PictureOptions& picture, const Listener& listener = {});
+Volume placed(const Volume& volume, const PictureOptions& picture, const Listener& listener = {});
 
 }  // namespace deltasplat

@@ -54,9 +54,9 @@ Sight sightOf(const Camera& camera, const glm::dmat4& indexFromWorld, glm::dvec2
 
 // Sets alpha to 1 where the line of sight meets the volume's box, voxels whole, else to 0.
 void coverBox(const Volume& volume, const Camera& camera, Image& image) {
-    const glm::dmat4 indexFromWorld = glm::inverse(volume.worldFromIndex);
-    const glm::dvec3 low = glm::dvec3(volume.box.min) - 0.5;
-    const glm::dvec3 high = glm::dvec3(volume.box.max) + 0.5;
+    const glm::dmat4 indexFromWorld = glm::inverse(volume.worldFromIndex());
+    const glm::dvec3 low = glm::dvec3(volume.box().min) - 0.5;
+    const glm::dvec3 high = glm::dvec3(volume.box().max) + 0.5;
     parallelFor(std::size_t(image.size.y), [&](std::size_t y) {
         for (int x = 0; x < image.size.x; ++x) {
             const Sight sight = sightOf(camera, indexFromWorld, {x + 0.5, double(y) + 0.5});

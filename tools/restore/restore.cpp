@@ -56,9 +56,9 @@ void requireVdb(const std::filesystem::path& input) {
 }
 
 void requireDeltas(const std::filesystem::path& input, const Volume& volume) {
-    if (volume.origin) return;
-    throw Error(ErrorCode::kInput, input.string() + ": grid \"" + volume.name + "\"",
-                "a grid of type " + volume.type, "a delta grid (convert takes other grids)");
+    if (volume.origin()) return;
+    throw Error(ErrorCode::kInput, input.string() + ": grid \"" + volume.name() + "\"",
+                "a grid of type " + volume.type(), "a delta grid (convert takes other grids)");
 }
 
 // The delta grids that the output can hold, by name. Without any, reading says what is wrong.
@@ -98,11 +98,11 @@ std::vector<Volume> readInput(const RestoreCommand& command, const std::filesyst
         Volume volume =
             readVolume(input, options, partOf(listener, done, done + 1 / double(names.size())));
         requireDeltas(input, volume);
-        stats.add(volume, volume.origin->codeBook);
-        stats.deltas += volume.origin->deltas;
-        stats.maxError = std::max(stats.maxError, volume.origin->maxError);
+        stats.add(volume, volume.origin()->codeBook);
+        stats.deltas += volume.origin()->deltas;
+        stats.maxError = std::max(stats.maxError, volume.origin()->maxError);
         // The source says all that the codes do, and more.
-        if (volume.source) volume.codes.reset();
+        if (volume.source()) volume = volume.withoutCodes();
         volumes.push_back(std::move(volume));
     }
     return volumes;

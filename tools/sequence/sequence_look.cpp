@@ -26,17 +26,8 @@ namespace {
 constexpr double kRounding = 1e-6;
 constexpr std::size_t kEmptyOrder = std::size_t{1} << 40;
 
-// Returns what is known of a volume but its voxels.
-Volume withoutVoxels(const Volume& volume) {
-    Volume rest = volume;
-    rest.codes = nullptr;
-    rest.uncut = nullptr;
-    rest.source = nullptr;
-    return rest;
-}
-
 double bytesOf(const Volume& volume) {
-    return volume.codes ? double(volume.codes->memoryBytes()) : 0;
+    return volume.codes() ? double(volume.codes()->memoryBytes()) : 0;
 }
 
 // The smallest box of voxels that holds a box of the world.
@@ -128,24 +119,24 @@ void SequenceLook::note(std::size_t frame, const Volume& volume, Grid& grid) {
     const std::size_t order = volume.empty() ? kEmptyOrder + frame : frame;
     if (!grid.order || order < *grid.order) {
         grid.order = order;
-        grid.first = withoutVoxels(volume);
+        grid.first = volume.withoutVoxels();
     }
     if (volume.empty()) return;
-    const WorldBox world = worldBox(volume.box, volume.worldFromIndex);
+    const WorldBox world = worldBox(volume.box(), volume.worldFromIndex());
     grid.box =
         grid.box ? WorldBox{glm::min(grid.box->min, world.min), glm::max(grid.box->max, world.max)}
                  : world;
-    grid.least = grid.active == 0 ? volume.valueMin : std::min(grid.least, volume.valueMin);
-    grid.most = grid.active == 0 ? volume.valueMax : std::max(grid.most, volume.valueMax);
-    grid.active += volume.activeCount;
+    grid.least = grid.active == 0 ? volume.valueMin() : std::min(grid.least, volume.valueMin());
+    grid.most = grid.active == 0 ? volume.valueMax() : std::max(grid.most, volume.valueMax());
+    grid.active += volume.activeCount();
     ++grid.volumes;
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-        if (volume.histogram[code] != 0)
-            grid.values.add(volume.codeBook.valueOf(Code(code)), volume.histogram[code]);
+    for (std::size_t code = 0; code < volume.histogram().size(); ++code) {
+        if (volume.histogram()[code] != 0)
+            grid.values.add(volume.codeBook().valueOf(Code(code)), volume.histogram()[code]);
     }
     if (grid.volumes > 1) grid.values.limit();
-    if (volume.mostFrequent)
-        grid.mostFrequent[volume.mostFrequent->value] += volume.mostFrequent->count;
+    if (volume.mostFrequent())
+        grid.mostFrequent[volume.mostFrequent()->value] += volume.mostFrequent()->count;
 }
 
 const Volume& SequenceLook::standIn(std::size_t frame, const std::string& grid,
@@ -172,8 +163,8 @@ void SequenceLook::addSeen(std::size_t frame, const Volume& volume) {
 
 // The first frame's grid with the values of all, and a box around all.
 Volume SequenceLook::whole(const Grid& grid) {
-    Volume volume = grid.first;
-    if (!grid.box) return volume;
+    if (!grid.box) return grid.first;
+    VolumeData volume = grid.first.data();
     volume.valueMin = grid.least;
     volume.valueMax = grid.most;
     volume.activeCount = grid.active;
@@ -191,7 +182,7 @@ Volume SequenceLook::whole(const Grid& grid) {
         if (!volume.mostFrequent || count > volume.mostFrequent->count)
             volume.mostFrequent = {value, count};
     }
-    return volume;
+    return Volume(std::move(volume));
 }
 
 void SequenceLook::finish() {
@@ -248,17 +239,17 @@ glm::dvec3 vectorOf(const Json& json) {
 
 Json SequenceLook::json(const Grid& grid) {
     const Volume& first = grid.first;
-    Json json{{"name", first.name},
-              {"type", first.type},
-              {"class", first.gridClass},
-              {"from_level_set", first.fromLevelSet},
-              {"has_background", first.hasBackground},
-              {"background", first.background},
-              {"space", first.space},
-              {"world_from_index", matrixJson(first.worldFromIndex)},
+    Json json{{"name", first.name()},
+              {"type", first.type()},
+              {"class", first.gridClass()},
+              {"from_level_set", first.fromLevelSet()},
+              {"has_background", first.hasBackground()},
+              {"background", first.background()},
+              {"space", first.space()},
+              {"world_from_index", matrixJson(first.worldFromIndex())},
               {"active", grid.active},
               {"range", {grid.least, grid.most}}};
-    if (first.labels) json["labels"] = labelText(*first.labels);
+    if (first.labels()) json["labels"] = labelText(*first.labels());
     if (grid.box) json["world_box"] = {vectorJson(grid.box->min), vectorJson(grid.box->max)};
     json["most_frequent"] = pairsJson(grid.mostFrequent);
     json["bits"] = grid.values.bits_;
@@ -268,7 +259,7 @@ Json SequenceLook::json(const Grid& grid) {
 
 SequenceLook::Grid SequenceLook::gridOf(const Json& json) {
     Grid grid;
-    Volume& first = grid.first;
+    VolumeData first;
     json.at("name").get_to(first.name);
     json.at("type").get_to(first.type);
     json.at("class").get_to(first.gridClass);
@@ -296,6 +287,7 @@ SequenceLook::Grid SequenceLook::gridOf(const Json& json) {
     if (bits < 0 || bits > 52 || values > kCodeCount || (grid.box && values == 0))
         throw std::invalid_argument("values");
     requireInvertible(first.worldFromIndex);
+    grid.first = Volume(std::move(first));
     return grid;
 }
 

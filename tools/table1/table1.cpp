@@ -64,7 +64,7 @@ std::map<std::string, fs::path> findTable1Files(const fs::path& folder, const Li
 
 RenderOptions table1Options(const Volume& volume, const TransferFunction& transferFunction) {
     RenderOptions options;
-    const glm::ivec3 dims = volume.box.dims();
+    const glm::ivec3 dims = volume.box().dims();
     options.camera.view = "front";
     options.camera.sizePixels = {dims.x, dims.y};
     options.camera.frameWidthWorld = dims.x * volume.voxelSize().x;

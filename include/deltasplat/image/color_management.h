@@ -11,36 +11,34 @@
 
 namespace deltasplat {
 
-/// How colours of light become those of a file, by OpenColorIO.
+/// How OpenColorIO converts light to a file's colours.
 struct ColorOptions {
-    /// OpenColorIO's configuration; empty: that of the environment variable OCIO, or OpenImageIO's
-    /// own, which knows little.
+    /// OpenColorIO's configuration; empty: environment variable OCIO's, or OpenImageIO's small one.
     std::filesystem::path config;
-    /// The configuration's name of a picture's own colours, linear ones of Rec. 709; empty: found
-    /// by its usual names, else the role scene_linear.
+    /// The configuration's name for a picture's own colours, linear Rec. 709; empty: one of the
+    /// usual names, else the role scene_linear.
     std::string workingSpace;
-    std::string colorSpace;      ///< that light is stored in; empty: its own
-    std::string display;         ///< that light is shown on; empty: the default one
-    std::string displayView;     ///< by which; empty: the display's default one
-    std::filesystem::path look;  ///< table (.cube and others) that display values go through
+    std::string colorSpace;      ///< of stored light; empty: linear Rec. 709
+    std::string display;         ///< for shown light; empty: the default display
+    std::string displayView;     ///< empty: the display's default view
+    std::filesystem::path look;  ///< table (.cube and others) for display values
 
-    /// Whether light is shown otherwise than by the curve of sRGB.
+    /// Whether light is shown by another curve than sRGB's.
     bool isShown() const { return !display.empty() || !displayView.empty() || !look.empty(); }
 };
 
-/// Transforms colours as OpenColorIO does, in floats: the same wherever it is the same version.
-/// Colours are divided by alpha before and multiplied after.
+/// Transforms colours in floats by OpenColorIO: equal results with equal versions. Colours are
+/// divided by alpha before and multiplied after.
 class ColorTransform {
   public:
-    /// @throw Error(kUsage) naming the option for what the configuration does not have;
-    ///        Error(kInput) for files that cannot be read
+    /// @throw Error(kUsage) naming an option not in the configuration; Error(kInput) for bad files
     explicit ColorTransform(const ColorOptions& options);
     ~ColorTransform();
     ColorTransform(ColorTransform&&) noexcept;
 
-    /// Makes of light what is stored of it in ColorOptions::colorSpace.
+    /// Turns light into ColorOptions::colorSpace, for storage.
     void convert(Image& image) const;
-    /// Makes of light what is shown of it, in linear colours of sRGB, 0 to 1 as a screen has them.
+    /// Turns light into shown colours: linear sRGB, 0 to 1 as on a screen.
     void show(Image& image) const;
 
   private:
@@ -48,8 +46,7 @@ class ColorTransform {
     std::unique_ptr<Impl> impl_;
 };
 
-/// Returns the primaries of colour spaces that are known by name: those of ACES, and linear Rec.
-/// 709; empty for others.
+/// Returns the primaries of ACES colour spaces and linear Rec. 709 by name; empty for others.
 std::optional<Chromaticities> chromaticitiesOf(const std::string& colorSpace);
 
 }  // namespace deltasplat

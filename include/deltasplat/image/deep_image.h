@@ -9,22 +9,22 @@
 
 namespace deltasplat {
 
-/// What a piece of a pixel's line of sight looks like by itself: a volume sample, as "Interpreting
-/// OpenEXR Deep Pixels" defines it. Of a piece that is cut in two, both absorb as its lengths say.
+/// A piece of a pixel's line of sight by itself: a volume sample of "Interpreting OpenEXR Deep
+/// Pixels". The halves of a cut piece absorb in proportion to their lengths.
 struct DeepSample {
-    glm::vec4 rgba{0.0f};  ///< scene-linear, premultiplied; colour may be there without alpha
-    float z = 0;           ///< depth at which it begins, in world units, >= 0
-    float zBack = 0;       ///< depth at which it ends, at least z
+    glm::vec4 rgba{0.0f};  ///< scene-linear, premultiplied; may have colour without alpha
+    float z = 0;           ///< depth of its front, in world units, >= 0
+    float zBack = 0;       ///< depth of its back, at least z
 };
 
 /// A row of pixels with any number of samples each.
 struct DeepRow {
     std::vector<std::size_t> begins{0};  ///< [width + 1]: the first of each pixel's samples
-    std::vector<DeepSample> samples;     ///< pixel by pixel, each from the front to the back
+    std::vector<DeepSample> samples;     ///< pixel by pixel, front to back
 };
 
-/// A picture with depth: rows top to bottom. Samples of a pixel are sorted and do not overlap (it
-/// is tidy); put over each other they are the flat picture's pixel.
+/// A picture with depth: rows top to bottom. Samples of a pixel are sorted and do not overlap
+/// (tidy); put over each other they give the flat picture's pixel.
 struct DeepImage {
     glm::ivec2 size{0};
     std::vector<DeepRow> rows;  ///< [size.y]
@@ -34,7 +34,6 @@ struct DeepImage {
         const std::size_t begin = row.begins[std::size_t(x)];
         return {row.samples.data() + begin, row.begins[std::size_t(x) + 1] - begin};
     }
-    /// All pixels' together.
     std::size_t samples() const {
         std::size_t sum = 0;
         for (const DeepRow& row : rows) sum += row.samples.size();

@@ -7,8 +7,7 @@
 
 namespace deltasplat {
 
-/// A picture of float RGBA, scene-linear and premultiplied: `[height][width][4]`, rows top to
-/// bottom.
+/// A picture of float RGBA, scene-linear and premultiplied: `[height][width][4]`, from the top.
 struct Image {
     glm::ivec2 size{0};
     std::vector<float> rgba;
@@ -20,7 +19,7 @@ struct Image {
     const float* pixel(int x, int y) const { return &rgba[4 * (std::size_t(y) * size.x + x)]; }
 };
 
-/// Depth of a pixel in which nothing is seen, as Cycles has it.
+/// Depth of an empty pixel, as in Cycles.
 inline constexpr float kNoDepth = 1e10f;
 
 }  // namespace deltasplat

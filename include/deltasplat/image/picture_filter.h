@@ -5,10 +5,9 @@
 
 namespace deltasplat {
 
-/// How a picture is made of the base plane. Widths are in pixels of the picture, or of the base
-/// plane where those are larger.
+/// The filter from base plane to picture. Widths are in pixels, of the coarser of the two.
 enum class PictureFilter {
-    kCatmullRom,  ///< sharp, and what pixels of the base plane are comes back as it was
+    kCatmullRom,  ///< sharp; keeps pixels of the base plane exactly
     kMitchell,    ///< a little softer (Mitchell and Netravali's B = C = 1/3)
     kGauss,       ///< soft: standard deviation 1/2, ends at 3/2; no weight is negative
     kBox          ///< the mean over a pixel's square; linear where the picture is finer

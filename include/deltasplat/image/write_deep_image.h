@@ -16,19 +16,18 @@ void checkDeepImageFile(const std::filesystem::path& file, glm::ivec2 sizePixels
                         const ImageFileOptions& options);
 
 /// Writes a deep .exr by scanlines (ZIPS compression): channels R, G, B, A as halves, or floats if
-/// `options.floatExr`, and Z and ZBack as floats; attributes as those of a flat one. The file
-/// appears under its final name only when it is whole. Deterministic, whatever the number of
-/// threads.
+/// `options.floatExr`, Z and ZBack as floats; attributes as in a flat .exr. The file appears under
+/// its final name only when it is whole. Deterministic, whatever the number of threads.
 ///
-/// NaN is never stored: it becomes 0. Values beyond the largest finite number of the channel's type
-/// become that number. A sample whose colour and alpha would all be stored as 0 is left out. Halves
-/// are rounded so that samples over each other stay what they were, within 2^-12 of 1.
+/// NaN becomes 0. Values beyond the channel type's largest finite number become that number. A
+/// sample whose colour and alpha would all be stored as 0 is left out. Halves are rounded so that
+/// stacked samples keep their result, within 2^-12 of 1.
 /// @throw Error(kUsage) as checkDeepImageFile, or if the picture has no pixels; Error(kFailed) if
-/// it does not fit this machine's memory; Error(kOutput) if it cannot be written
+///        it does not fit this machine's memory; Error(kOutput) if it cannot be written
 void writeDeepImage(const std::filesystem::path& file, const DeepImage& image,
                     const ImageFileOptions& options);
 
-/// Returns the bytes of the file that writeDeepImage would write, without writing any.
+/// Returns the file's bytes instead of writing them.
 /// @throw as writeDeepImage
 std::string encodeDeepImage(const std::filesystem::path& file, const DeepImage& image,
                             const ImageFileOptions& options);

@@ -9,16 +9,15 @@
 
 namespace deltasplat {
 
-/// What a file says of a label: a value of voxels that is the number of a name.
+/// A label in a file: a voxel value that stands for a name.
 struct LabelEntry {
     std::int64_t value = 0;
-    std::string name;               ///< empty where it has none
+    std::string name;               ///< empty: none
     std::optional<glm::dvec3> rgb;  ///< sRGB, 0..1
     bool operator==(const LabelEntry&) const = default;
 };
 
-/// The labels that a file names, in its order; of values that it says to be labels and does not
-/// name there may be none.
+/// The named labels of a file, in its order; may be empty although values are labels.
 struct LabelList {
     std::vector<LabelEntry> entries;
     bool operator==(const LabelList&) const = default;

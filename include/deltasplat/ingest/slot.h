@@ -8,26 +8,24 @@
 
 namespace deltasplat {
 
-/// What a voxel indexes tables by: 0 = empty (inactive or invisible), code + 1 otherwise. Delta
-/// grids in files have slots beyond kSlotCount for inactive voxels that keep a value of their own.
+/// A voxel's index into tables: 0 = empty (inactive or invisible), else code + 1. Delta grids in
+/// files have slots beyond kSlotCount for inactive voxels with values of their own.
 using Slot = std::int32_t;
 inline constexpr Slot kEmptySlot = 0;
 inline constexpr int kSlotCount = kCodeCount + 1;
 
-/// Returns the volume axes (0 = x, 1 = y, 2 = z) that become (slice, u, v): a cyclic permutation,
-/// so that handedness is kept.
+/// Returns the volume axes (0 = x, 1 = y, 2 = z) of (slice, u, v): cyclic, to keep handedness.
 inline glm::ivec3 sliceOrder(int sliceAxis) {
     return {sliceAxis, (sliceAxis + 1) % 3, (sliceAxis + 2) % 3};
 }
 
-/// Returns the components of `v` in (slice, u, v) order.
 template <typename Vector>
 glm::ivec3 toSliceOrder(const Vector& v, int sliceAxis) {
     const glm::ivec3 order = sliceOrder(sliceAxis);
     return {v[order[0]], v[order[1]], v[order[2]]};
 }
 
-/// Returns the components of `v`, which are in (slice, u, v) order, in x, y, z order.
+/// Returns the components of `v`, given in (slice, u, v) order, in x, y, z order.
 inline glm::ivec3 fromSliceOrder(const glm::ivec3& v, int sliceAxis) {
     const glm::ivec3 order = sliceOrder(sliceAxis);
     glm::ivec3 xyz;

@@ -5,17 +5,16 @@
 
 namespace deltasplat {
 
-/// A value that many voxels have.
 struct FrequentValue {
     double value = 0;
-    std::uint64_t count = 0;  ///< voxels that have it
+    std::uint64_t count = 0;
 };
 
-/// How far codes are from the values of the source, measured over every active voxel.
+/// Error of codes against the source's values, over every active voxel.
 struct CodeError {
     double absolute = 0;  ///< largest difference, in data units
-    /// Largest difference as a share of the value's magnitude; of values that are small beside the
-    /// bulk of all, as a share of 0.076 times the bulk's width, of which 2^-16 of it is 2e-4.
+    /// Largest difference relative to the value's magnitude; for values small against the bulk,
+    /// relative to 0.076 times the bulk's width, of which 2e-4 is 2^-16 of the width.
     double relative = 0;
 };
 

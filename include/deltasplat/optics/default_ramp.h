@@ -7,27 +7,25 @@
 
 namespace deltasplat {
 
-/// Whether a volume's values say how much there is of something at a place, as smoke has more or
-/// less of it: a .vdb of class fog volume, or one that is named `density` and says nothing of a
-/// class. Other values (of a scanner, of a temperature) mean more than their amount.
+/// Whether a volume's values are amounts of something, such as smoke: a .vdb of class fog volume,
+/// or one named `density` without a class. A scanner's values and temperatures are none.
 bool isFog(const Volume& volume);
 
-/// Whether a volume's values are Hounsfield units, as CT scanners give them: it lies in a patient's
-/// space (Volume::space), at least a hundredth of it is air (-1100 to -900) and a fiftieth soft
-/// tissue (-200 to 300). What is less than air, as what a scanner has not seen, does not matter.
+/// Whether a volume's values are Hounsfield units of a CT scanner: it lies in a patient's space
+/// (Volume::space), and at least a hundredth is air (-1100 to -900) and a fiftieth soft tissue
+/// (-200 to 300). Values below air, where a scanner saw nothing, do not matter.
 bool isHounsfield(const Volume& volume);
 
-/// Returns where most values lie: from the 1st to the 99th percentile of the active ones other than
-/// the background. Both are the same where nearly all are; of a volume with nothing but background
-/// they are the background and 1 more.
+/// Returns the 1st and 99th percentile of the active values other than the background, equal if
+/// nearly all values are. For a volume of background only: the background and 1 more.
 glm::dvec2 bulkRange(const Volume& volume);
 
-/// Returns the values at which default ramps and presets of a range begin and end: bulkRange, but
-/// of fog (isFog) from the background on, for all that is more is there.
+/// Returns the values at which default ramps and range presets begin and end: bulkRange, but for
+/// fog (isFog) from the background on, because all larger values are fog.
 glm::dvec2 rampRange(const Volume& volume);
 
-/// Returns a ramp as defaultRamp(volume) is, grey or white, with other ends.
-/// @param range  the values that are clear and as dense as the ramp gets; range.x < range.y
+/// Returns defaultRamp(volume), grey or white, with other ends.
+/// @param range  the clear and the densest value; range.x < range.y
 TransferFunction defaultRamp(const Volume& volume, const glm::dvec2& range);
 
 /// Returns wholeRamp(volume) with other ends.

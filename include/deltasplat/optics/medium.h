@@ -12,42 +12,40 @@
 
 namespace deltasplat {
 
-/// What a grid adds to a medium that the volume is the first part of: something that swallows
-/// light, or fire. All parts together are one medium: where several are, extinctions add up, and
-/// what shines is dimmed by all of them. A grid may lie in the world as it likes; it is read at the
-/// volume's voxels, between its own linearly, or as the mean of those that fall into one.
+/// An absorbing or glowing grid that joins the volume in one medium: extinctions add up, and all
+/// parts dim all light. A grid may lie anywhere in the world. It is read at the volume's voxels:
+/// linearly between the grid's voxels, or as the mean of the grid's voxels inside one.
 struct MediumPart {
     enum class Kind {
-        kAbsorption,  ///< as a volume: a transfer function's colours and opacities
-        /// Shines in a transfer function's colours times their opacities, times `strength`, on each
-        /// unit distance. Swallows nothing.
+        kAbsorption,  ///< like a volume: a transfer function's colours and opacities
+        /// Absorbs nothing; shines in a transfer function's colours times opacities times
+        /// `strength` per unit distance.
         kEmission,
-        /// Shines as a black body of so many kelvin; swallows nothing. Its radiance on each unit
-        /// distance is strength * 5.670374e-14 T^4 / pi, as Cycles has it: 0.091 at 1500 K; from
-        /// 798 K (Draper's point, below which nothing is seen to glow) down to 500 K it fades out.
-        /// Colours are those of black bodies, of luminance 1.
+        /// Shines as a black body of a temperature in kelvin, in colours of luminance 1; absorbs
+        /// nothing. Radiance per unit distance is strength * 5.670374e-14 T^4 / pi, as in Cycles:
+        /// 0.091 at 1500 K. It fades out from 798 K (Draper's point, first visible glow) to 500 K.
         kBlackbody,
     };
 
     std::shared_ptr<const Volume> volume;
     Kind kind = Kind::kBlackbody;
-    TransferFunction transferFunction;  ///< not of black bodies
+    TransferFunction transferFunction;  ///< not for black bodies
     /// Data values of 0 and 1 of a normalized transfer function; empty: defaultRange.
     std::optional<glm::dvec2> range;
-    double strength = 1;     ///< 0..kMostLight; of absorption it scales the extinction
-    double kelvinScale = 1;  ///< of black bodies: kelvin = scale * value + offset
+    double strength = 1;     ///< 0..kMostLight; for absorption it scales the extinction
+    double kelvinScale = 1;  ///< black bodies: kelvin = scale * value + offset
     double kelvinOffset = 0;
 };
 
-/// Grids whose values the colours of a volume are multiplied by: red, green and blue, scene-linear,
-/// at least 0. Where none of their voxels is near, colours stay as they are.
+/// Grids of red, green and blue, scene-linear, >= 0, that multiply the volume's colours. Colours do
+/// not change where no voxel of a grid is near.
 using ColorGrids = std::array<std::shared_ptr<const Volume>, 3>;
 
-/// Parts that there may be beside the volume: three, or one if there are colour grids.
+/// Most parts beside the volume: three, or one with colour grids.
 inline constexpr int kMostParts = 3;
 inline constexpr int kMostPartsWithColors = 1;
 
-/// What glows less than this, summed up over the longest way through the volume, is not there.
+/// Glow below this sum over the longest way through the volume counts as none.
 inline constexpr double kLeastGlow = 0x1p-20;
 
 }  // namespace deltasplat

@@ -9,50 +9,47 @@
 
 namespace deltasplat {
 
-/// A transfer function that need not be read from a file.
+/// A built-in transfer function.
 struct Preset {
-    /// What its points' x are.
+    /// What the x of points are.
     enum class Values {
-        kRange,       ///< shares of a range of data values, see fitPreset: it is normalized
-        kHounsfield,  ///< Hounsfield units, as CT scanners give them: air is -1000, water 0
-        kLabels       ///< whole numbers that name what a voxel belongs to; 0 is nothing
+        kRange,       ///< shares of a range of data values: a normalized function, see fitPreset
+        kHounsfield,  ///< Hounsfield units of CT scanners: air is -1000, water 0
+        kLabels       ///< whole numbers of labels; 0 is nothing
     };
     std::string name;
     Values values = Values::kRange;
-    std::string summary;  ///< what it is for, in a few words
+    std::string summary;  ///< purpose, in a few words
 };
 
-/// What is more is clear under the preset `labels`.
+/// Larger labels are clear under the preset `labels`.
 inline constexpr int kLargestPresetLabel = 65535;
 
-/// Returns all there are, those for the same kind of data together.
+/// Returns all presets, grouped by the kind of data.
 const std::vector<Preset>& presets();
 
-/// Shows what a first look at a CT scan is for.
+/// The preset for a first look at CT scans.
 inline constexpr const char* kScanPreset = "ct-soft-tissue";
-/// Gives each label a colour of its own.
+/// Gives each label its own colour.
 inline constexpr const char* kLabelPreset = "labels";
 
-/// Returns the preset of that name, or null.
 const Preset* findPreset(const std::string& name);
 
-/// Returns a preset's transfer function.
-/// @throw Error(kUsage) naming all presets, if there is none of that name
+/// @throw Error(kUsage) naming all presets, for an unknown name
 TransferFunction presetFunction(const std::string& name);
 
-/// Returns the preset of a first look at a volume: kLabelPreset of labels, kScanPreset of
-/// Hounsfield units (isHounsfield); null: none, but a ramp.
+/// Returns the preset for a first look at a volume: kLabelPreset for labels, kScanPreset for
+/// Hounsfield units (isHounsfield), else null: a ramp.
 const Preset* defaultPreset(const Volume& volume);
 
-/// Returns what a volume is first shown by, as by the program: its default preset, with the colours
-/// that a file gives labels, or else defaultRamp; level sets and scans are lit as surfaces.
+/// Returns the program's default look of a volume: its default preset, with the file's label
+/// colours, or else defaultRamp; level sets and scans are lit as surfaces.
 Optics defaultOptics(const Volume& volume);
 
-/// Lets a preset of a range show where most values of the volume lie: unless `optics.range` is
-/// given, it becomes rampRange(volume), the 1st to the 99th percentile, or of fog from the
-/// background on (default_ramp.h). Where both are the same value, the preset is as below its range
-/// below that value, and as at the range's end from there on, as defaultRamp is. Without this a
-/// normalized function's range is defaultRange. Presets of other values are left alone.
+/// Sets `optics.range` for a preset of a range, unless it is given, to rampRange(volume): 1st to
+/// 99th percentile, or for fog from the background on (default_ramp.h). If both ends are one value,
+/// smaller values look as below the preset's range, others as at its end, as with defaultRamp.
+/// Unfitted normalized functions use defaultRange. Presets of other values stay as they are.
 void fitPreset(const Preset& preset, const Volume& volume, Optics& optics);
 
 }  // namespace deltasplat

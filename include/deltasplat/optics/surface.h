@@ -5,17 +5,16 @@
 
 namespace deltasplat {
 
-struct Volume;
+class Volume;
 
-/// An opaque surface: where values, which change linearly from voxel to voxel, pass one value. What
-/// is above it is inside; in level sets (isLevelSet) what is below.
+/// An opaque surface where values, linear between voxels, pass one value. Larger values are inside;
+/// in level sets (isLevelSet) smaller ones.
 struct Surface {
     double isovalue = 0;              ///< in data units
     glm::dvec3 color{0.6, 0.6, 0.6};  ///< scene-linear
 };
 
-/// Whether a volume's values are distances to a surface, as those of a .vdb of class level set that
-/// was not turned into fog: less than 0 inside.
+/// Whether values are distances to a surface, negative inside: a .vdb level set not made fog.
 bool isLevelSet(const Volume& volume);
 
 }  // namespace deltasplat

@@ -12,18 +12,17 @@
 
 namespace deltasplat {
 
-/// In which space colours between two points of a transfer function are mixed, as VTK has them.
+/// Space in which colours between two points of a transfer function are mixed, as in VTK.
 enum class ColorSpace {
     kRgb,          ///< as they are given
-    kHsv,          ///< by hue, through all hues between the two, by saturation and value
+    kHsv,          ///< hue, through all hues between the two, saturation and value
     kHsvShortest,  ///< likewise, by the shorter way around the circle of hues
     kLab,          ///< CIE L*a*b*
-    kDiverging  ///< by magnitude, saturation and hue of L*a*b*, through white between two colours
+    kDiverging     ///< magnitude, saturation and hue of L*a*b*, through white
 };
 
-/// Colour and opacity as functions of the data value, in the form ParaView saves them.
-///
-/// Of several points at the same x the last one counts at x itself, so that two make a step.
+/// Colour and opacity as functions of the data value, in ParaView's form. Of several points at one
+/// x the last counts at x itself, so two points make a step.
 struct TransferFunction {
     struct ColorPoint {
         double x = 0;
@@ -32,8 +31,8 @@ struct TransferFunction {
     struct OpacityPoint {
         double x = 0;
         double opacity = 0;  ///< 0..1, over one unit distance
-        double midpoint =
-            0.5;  ///< 0..1, where between this point and the next the half-way value lies
+        /// 0..1, where between this point and the next the half-way value lies.
+        double midpoint = 0.5;
         double sharpness = 0;  ///< 0 = linear, 1 = a step
     };
     std::string name;                     ///< what the file calls it, or the file's stem
@@ -44,44 +43,41 @@ struct TransferFunction {
     ColorSpace colorSpace = ColorSpace::kRgb;
     bool categorical = false;  ///< values are labels: nothing lies between two of them
 
-    /// Returns the scene-linear, not premultiplied colour at x. Constant beyond the first and the
-    /// last point. What L*a*b* makes of sRGB colours that no screen shows is brought back to what
-    /// one does.
+    /// Returns the scene-linear, not premultiplied colour at x. Constant beyond the first and last
+    /// point. sRGB colours mixed in L*a*b* are brought into what screens can show.
     glm::dvec3 colorAt(double x) const;
-    /// Returns the opacity 0..1 over one unit distance at x, with midpoint and sharpness as VTK
-    /// understands them. Constant beyond the first and the last point.
+    /// Returns the opacity 0..1 over one unit distance at x, with VTK's midpoint and sharpness.
+    /// Constant beyond the first and last point.
     double opacityAt(double x) const;
-    /// Whether values must not be mixed before they get colours: a colour that is seen changes at
-    /// once to another, or values are labels, of which others may lie between any two.
+    /// Whether values must get colours before they are mixed: a visible colour jumps, or values are
+    /// labels, between any two of which other labels may lie.
     bool colorsJump() const;
 };
 
 /// Reads the first transfer function of a ParaView JSON file (an array of presets, or one object):
 /// `Name`, `RGBPoints`, `Points`, `Normalized`, `ColorSpaceOfPoints`, `ColorSpace`; other members
-/// are passed over. `ColorSpace` is "RGB", "HSV" (with `HSVWrap`), "Lab" or "CIELAB",
-/// "Lab/CIEDE2000", "Diverging" or "Step": each interval has the colour of its right end, which
-/// belongs to it; its left end has its own. Others are mixed as RGB, with a warning. Linear colours
-/// may be brighter than 1. Without `Points` opacities rise from 0 at the first colour's x to 1 at
-/// the last one's, with a warning.
+/// are ignored. `ColorSpace` is "RGB", "HSV" (with `HSVWrap`), "Lab" or "CIELAB", "Lab/CIEDE2000",
+/// "Diverging" or "Step", in which an interval has the colour of its right end, right end included.
+/// Other spaces are mixed as RGB, with a warning. Linear colours may be brighter than 1. Without
+/// `Points` opacities rise from 0 at the first colour's x to 1 at the last's, with a warning.
 /// @throw Error(kInput) naming file, line and what was expected, if it is missing or malformed
 TransferFunction readTransferFunction(const std::filesystem::path& file,
                                       const Listener& listener = {});
 
-/// Returns the ramp used when none is given: clear at rampRange's (default_ramp.h) lower end, with
-/// `kRampOpacity` at its upper end, white for fog (isFog), else from black to white; or, where 0
-/// stands for nothing and values lie on both sides, clear at 0, blue below, red above. Where both
-/// ends are one value, it is dense from there on. A volume with nothing but background is clear.
+/// Returns the default ramp: clear at rampRange's (default_ramp.h) lower end, `kRampOpacity` at its
+/// upper end, white for fog (isFog), else black to white. Where 0 is the background and values lie
+/// on both sides: clear at 0, blue below, red above. Where both ends are one value, it is dense
+/// from that value on. A volume of background only is clear.
 TransferFunction defaultRamp(const Volume& volume);
 inline constexpr double kRampOpacity = 0.1;
 
-/// Returns the grey ramp for largest values when no other is given: black at the smallest and white
-/// at the largest active value, grey levels of an sRGB picture in proportion to values between.
+/// Returns the default grey ramp for largest values: black at the smallest and white at the largest
+/// active value; grey levels of an sRGB picture are proportional to values.
 TransferFunction wholeRamp(const Volume& volume);
 
-/// Returns the data values that 0 and 1 of a normalized transfer function stand for when nothing
-/// else is said: 0..255 for uint8 sources, otherwise the smallest and largest of the active values
-/// and, for .vdb grids, the background. A volume of one value only: from 0 to that value, or from
-/// that value to 0 if it is negative, or 0..1 if it is zero.
+/// Returns the default data values for 0 and 1 of a normalized transfer function: 0..255 for uint8
+/// sources, otherwise smallest and largest of the active values and, for .vdb grids, the
+/// background. A volume of one value v: 0..v, v..0 if v is negative, 0..1 if v is 0.
 glm::dvec2 defaultRange(const Volume& volume);
 
 }  // namespace deltasplat

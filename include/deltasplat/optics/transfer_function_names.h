@@ -9,14 +9,12 @@
 
 namespace deltasplat {
 
-/// Returns the names of a ParaView JSON file's transfer functions, in the file's order; "" for one
-/// without a name or malformed.
+/// Returns the names of a ParaView JSON file's functions, in order; "" if nameless or malformed.
 /// @throw Error(kInput) if the file is missing or no JSON, or holds none
 std::vector<std::string> transferFunctionNames(const std::filesystem::path& file);
 
-/// Reads the transfer function of that name, the first of several, as readTransferFunction does,
-/// whatever is wrong with the others.
-/// @throw Error(kInput) as that, or naming those that there are
+/// Reads the first function of that name, as readTransferFunction; others may be malformed.
+/// @throw Error(kInput) likewise, or naming the existing functions
 TransferFunction readTransferFunction(const std::filesystem::path& file, const std::string& name,
                                       const Listener& listener = {});
 

@@ -9,24 +9,23 @@
 
 namespace deltasplat {
 
-/// A further grid of a volume that has several: what is there besides its density.
+/// A further grid of a volume, beside its density.
 struct AnalyticGrid {
     std::string name;
     /// Value at a position, in the grid's own unit; else as AnalyticVolume::valueAt.
     std::function<double(const glm::dvec3& position)> valueAt;
-    /// What is not above it does not matter: a file leaves it out, as 0.
+    /// Values up to the threshold do not matter: files leave them out, as 0.
     double threshold = 0;
 };
 
 /// A volume whose true value is known in closed form at every point.
 struct AnalyticVolume {
     std::string name;
-    /// Value 0..1 at a position; the volume fills the cube [-1, 1]^3 (x, y, z), whatever its dims.
-    /// Deterministic and thread-safe.
+    /// Value 0..1 in the cube [-1, 1]^3 (x, y, z), whatever dims. Deterministic, thread-safe.
     std::function<double(const glm::dvec3& position)> valueAt;
     std::vector<AnalyticGrid> others = {};  ///< at the same places
-    /// Scene-linear colour (r, g, b), each 0..1, at a position; matters where the value is not 0.
-    /// Empty: the volume has none. Deterministic and thread-safe.
+    /// Scene-linear colour (r, g, b), each 0..1, at a position with a value other than 0. Empty:
+    /// none. Deterministic and thread-safe.
     std::function<glm::dvec3(const glm::dvec3& position)> colorAt = {};
 };
 
@@ -47,21 +46,17 @@ struct AnalyticVolume {
 ///   5 liver, 6 stomach, 7 kidneys, 8 spleen, 9 bowels, 10 brain, 11 aorta; y goes up to the head,
 ///   the face looks along +z
 /// - fire: a seeded plume that burns below and smokes above, y being up. The value is smoke; others
-///   are `temperature` (300 to 2200 kelvin, 500 and less left out) and `flame` (0..1). Where there
-///   is flame it has 800 K or more, where there are more than 1200 K there is flame, and where that
-///   is 0.5 or more there is no smoke
-/// - explosion: a seeded ball of thick smoke, all lumps, whose core and cracks are hot:
-/// `temperature`
-///   as of the fire, and a colour, from scorched brown to grey (red >= green >= blue)
+///   are `temperature` (300 to 2200 kelvin, 500 and less left out) and `flame` (0..1). Flames have
+///   at least 800 K, more than 1200 K are in flames, and flames of 0.5 or more have no smoke
+/// - explosion: a seeded ball of thick smoke, all lumps, with hot core and cracks: `temperature`
+///   like the fire's, and a colour, from scorched brown to grey (red >= green >= blue)
 const std::vector<std::string>& analyticNames();
 
 /// Returns the volume called `name`.
-/// @param seed   chooses the shape of cloud, vessels, fire and explosion, and noise; without effect
-///               on the others
+/// @param seed   shape of cloud, vessels, fire and explosion, and noise; no effect on others
 /// @param noise  standard deviation of the engine's and the vessels' noise in units of the value
-///               range, 0 = none; noisy values are clamped to 0..1; without effect on the others
-/// @throw Error(kUsage) if there is no such name (listing those there are), or if the noise is
-/// negative or not finite
+///               range, 0 = none; noisy values are clamped to 0..1; no effect on others
+/// @throw Error(kUsage) for an unknown name (listing all), or a noise negative or not finite
 AnalyticVolume makeAnalytic(const std::string& name, std::uint64_t seed = 1, double noise = 0);
 
 }  // namespace deltasplat

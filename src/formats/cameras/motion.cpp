@@ -13,8 +13,8 @@
 namespace deltasplat {
 namespace {
 
-// (x, y, z, w) of length 1, of a rotation matrix; from its largest number, so that nothing is
-// divided by what is small (S. Shepperd, "Quaternion from Rotation Matrix", 1978).
+// Returns a rotation's unit quaternion (x, y, z, w). Starts from its largest component, to avoid
+// division by small numbers (S. Shepperd, "Quaternion from Rotation Matrix", 1978).
 glm::dvec4 quaternionOf(const glm::dmat3& m) {
     const double trace = m[0][0] + m[1][1] + m[2][2];
     const glm::dvec4 four(m[0][0], m[1][1], m[2][2], trace);
@@ -124,7 +124,7 @@ glm::dmat4 rotation(const glm::dvec3& degrees, const std::string& order) {
         one[next][last] = sine;
         one[last][next] = -sine;
         one[last][last] = cosine;
-        // What comes first stands next to the point.
+        // The first rotation is applied to the point first.
         turned = one * turned;
     }
     return turned;

@@ -25,7 +25,7 @@ using Kind = LocatedJson::Kind;
 
 constexpr double kMost = 1e30;
 
-// What says where the camera is, and what may change from key to key besides.
+// Fields for the camera's place, and further fields that may vary per key.
 constexpr std::array kOfPlace{"matrix", "eye", "target", "direction", "up", "translate", "rotate"};
 constexpr std::array kOfLens{"focal", "aperture", "offset", "frame_width", "near", "far"};
 constexpr std::array kOfFile{"projection",   "fit",     "pixel_aspect", "size",
@@ -85,7 +85,7 @@ class JsonCamera {
         }
     }
 
-    // Numbers that one can still reckon with.
+    // Reads a number in a range that arithmetic can handle.
     double number(const LocatedJson& json, const char* name, double least, double most,
                   const char* expected) const {
         if (json.kind != Kind::kNumber || !(json.number >= least && json.number <= most))
@@ -192,7 +192,7 @@ class JsonCamera {
         film.apertureMm = {v[0], v[1]};
     }
 
-    // Returns whether there is one.
+    // Returns whether the camera has a place.
     bool readPlace(const LocatedJson& json, FilmCamera& film) const {
         const LocatedJson* first = nullptr;
         const char* name = nullptr;
@@ -224,7 +224,6 @@ class JsonCamera {
         }
     }
 
-    // 16 numbers, or four rows of four.
     glm::dmat4 matrix(const LocatedJson& json) const {
         const char* expected = "16 numbers, or four rows of four";
         glm::dmat4 result;
@@ -288,7 +287,7 @@ class JsonCamera {
         return names;
     }
 
-    // What one key says and another does not, could not be known between them.
+    // A field in only some keys could not be interpolated.
     void requireAlike(const LocatedJson& first, const LocatedJson& key) const {
         const std::vector<std::string> mine = namesOf(key);
         const std::vector<std::string> others = namesOf(first);
@@ -369,13 +368,13 @@ CameraMotion readCamera(const std::filesystem::path& file, const std::string& na
                 isOtherUsd ? ".usda, as usdcat -o x.usda writes it" : ".json, .usda or .exr");
 }
 
-// Based on: Pixar, "Universal Scene Description", UsdGeomCamera: it looks along its -z axis, y is
-// up; apertures and focal lengths are tenths of a scene unit.
+// Based on: Pixar, "Universal Scene Description", UsdGeomCamera: looks along -z, y is up; apertures
+// and focal lengths are tenths of a scene unit.
 namespace {
 
 using UsdKind = UsdValue::Kind;
 
-// What the schema has where a file is silent.
+// Defaults of the schema.
 constexpr double kFocal = 50;
 constexpr double kHorizontalAperture = 20.955;
 constexpr double kVerticalAperture = 15.2908;
@@ -439,7 +438,7 @@ class UsdCamera {
                     value.quoted() + " for " + name, expected);
     }
 
-    // Null where it is not written or blocked.
+    // Null if the property is absent or blocked.
     const UsdProperty* find(const char* name, double time) const {
         const UsdProperty* property = prim().find(name);
         return property && valueAt(*property, time).kind != UsdKind::kNone ? property : nullptr;
@@ -491,7 +490,7 @@ CameraMotion readUsdCamera(const std::filesystem::path& file, const std::string&
     motion.frames = camera->times();
     motion.upWorld = camera->up();
     motion.at = [camera](double frame) { return camera->at(frame); };
-    // What is wrong with any of them is said before one is used.
+    // Reports errors of any frame before one is used.
     motion.at(0);
     for (const double frame : motion.frames) motion.at(frame);
     return motion;

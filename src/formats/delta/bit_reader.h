@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: Robert Rice, "Some Practical Universal Noiseless Coding Techniques", 1979. Here a
-// quotient has a limit, behind which a number stands as it is.
+// Based on: Robert Rice, "Some Practical Universal Noiseless Coding Techniques", 1979. Here
+// quotients have a limit, behind which a number stands uncoded.
 #pragma once
 
 #include <bit>
@@ -12,15 +12,14 @@
 
 namespace deltasplat {
 
-/// Reads numbers of any width from words of 64 bits, each from its lowest bit on. What is read
-/// behind the last word has to be there: whoever reads damaged words asks `position` often enough.
+/// Reads numbers of any width from 64-bit words, lowest bits first. The words need padding: readers
+/// of damaged words run past the end until they check `position`.
 class BitReader {
   public:
-    /// @param position  of the first bit to be read
     BitReader(const std::uint64_t* words, std::size_t position)
         : words_(words), position_(position) {}
 
-    /// How many bits lie between the first word and what is read next.
+    /// Returns the index of the next bit.
     std::size_t position() const { return position_; }
     void skip(int bits) { position_ += std::size_t(bits); }
 
@@ -28,7 +27,7 @@ class BitReader {
     std::uint64_t peek() const {
         const std::uint64_t* const word = words_ + (position_ >> 6);
         const int shift = int(position_ & 63);
-        // Two shifts, since one by 64 is undefined.
+        // Two shifts, because a shift by 64 is undefined.
         return word[0] >> shift | word[1] << 1 << (63 - shift);
     }
 
@@ -39,8 +38,7 @@ class BitReader {
         return taken;
     }
 
-    /// Takes a number of any size: Elias's gamma code of it and 1. The largest of all stands for
-    /// what no such code is.
+    /// Takes Elias's gamma code of a number plus 1. Returns the largest number for an invalid code.
     std::uint64_t takeNumber() {
         const int zeros = std::countr_zero(peek());
         if (zeros == 64) return std::numeric_limits<std::uint64_t>::max();
@@ -60,22 +58,20 @@ class BitReader {
     std::size_t position_;
 };
 
-/// How numbers of one kind are written: as a quotient in ones, a zero, and a remainder of as many
-/// bits as the parameter says; or, where there would be kMostOnes ones, as those and all its bits.
-/// Their bits lie in planes (plane_kernels.h).
+/// Rice code of one kind of numbers: a quotient in ones, a zero, and a remainder of `parameter`
+/// bits. kMostOnes ones instead precede all bits of a number. Bits lie in planes (plane_kernels.h).
 struct RiceCode {
     static constexpr int kMostOnes = 8;
 
     int width = 32;  ///< bits of the largest number
 
-    /// Bits of a parameter.
     int parameterBits() const { return width > 32 ? 6 : 5; }
 };
 
-/// Writes what BitReader reads.
+/// Writes words for BitReader.
 class BitWriter {
   public:
-    /// @param bits  0..64; those of `number` above have to be 0
+    /// @param bits  0..64; higher bits of `number` must be 0
     void put(std::uint64_t number, int bits) {
         if (bits == 0) return;
         if (used_ == 64) {
@@ -98,7 +94,7 @@ class BitWriter {
 
     std::size_t bits() const { return 64 * words_.size() - std::size_t(64 - used_); }
 
-    /// Returns what has been written, up to a whole word.
+    /// Returns all words, the last one padded with zeros.
     const std::vector<std::uint64_t>& words() const { return words_; }
 
   private:
@@ -106,13 +102,13 @@ class BitWriter {
     int used_ = 64;  // bits of the last word
 };
 
-/// A parameter for some numbers, and how many bits they take with it.
+/// A parameter for some numbers, and the bits that they take with it.
 struct RiceChoice {
     int parameter = 0;
     std::uint64_t bits = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// Returns the parameter with which numbers take the fewest bits, the smallest such.
+/// Returns the smallest parameter with which numbers take the fewest bits.
 template <typename Number>
 RiceChoice bestRice(RiceCode code, std::span<const Number> numbers) {
     Number all = 0;
@@ -126,7 +122,7 @@ RiceChoice bestRice(RiceCode code, std::span<const Number> numbers) {
                                                    : RiceCode::kMostOnes + code.width;
         }
         if (bits < best.bits) best = {parameter, bits};
-        // A larger one gives every number another bit.
+        // Larger parameters add a bit to every number.
         if ((all >> parameter) == 0) break;
     }
     return best;

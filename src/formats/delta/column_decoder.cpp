@@ -58,7 +58,7 @@ SlotRules slotRulesOf(const DeltaHeader& header) {
     rules.lowest = 1;
     rules.highest = std::uint32_t(header.codeCount);
     if (header.book.kind == CodeBook::Kind::kHalf) {
-        // Codes are in the order of values, so that the finite ones are neighbours.
+        // Codes follow the order of values, so the finite ones are neighbours.
         const auto isFinite = [&](std::uint32_t slot) {
             return std::isfinite(header.book.valueOf(Code(slot - 1)));
         };
@@ -132,8 +132,8 @@ bool ColumnDecoder::decode(const DeltaColumn& column, const glm::ivec2& range,
     return walker_->block() == DeltaWalker::kNoBlock;
 }
 
-// Adds blocks without deltas, up to one, of which each shows what the one before it does. Where the
-// first is left out, all are, however many there are.
+// Adds the blocks without deltas up to `end`, each of which shows the same as the one before. If
+// the first is left out, all are skipped in one step.
 bool ColumnDecoder::decodeAlike(glm::ivec3 position, int end, std::vector<SlotBlock>& blocks) {
     const BlockLayout& layout = grid_.layout;
     while (position.x < end) {
@@ -143,7 +143,7 @@ bool ColumnDecoder::decodeAlike(glm::ivec3 position, int end, std::vector<SlotBl
         const bool isWhole = layout.hasSlice(8 * position.x) && layout.hasSlice(8 * position.x + 7);
         ++position.x;
         if (blocks.size() > before || !isWhole) continue;
-        // Of the last, slices may be missing.
+        // The last block may lack slices.
         const int alike = std::max(end - 1 - position.x, 0);
         activeCount_ += std::uint64_t(alike) * (activeCount_ - activeBefore);
         if (activeCount_ > grid_.header.active) return false;
@@ -185,7 +185,7 @@ bool ColumnDecoder::decodeBlock(const glm::ivec3& position, const BlockDeltas* d
                           Code(range.highest - 1)};
     const std::size_t before = blocks.size();
     const bool isSound = add(block, std::uint64_t(512 - empty), blocks);
-    // If it is left out, the next takes its room.
+    // A block that was left out gives its room to the next one.
     used_ += blocks.size() - before;
     return isSound;
 }
@@ -195,13 +195,12 @@ bool ColumnDecoder::isConstant() const {
                        [&](std::uint32_t slot) { return slot == slots_[0]; });
 }
 
-// What a block shows of a slot: a code, or what rests.
+// Returns what a block shows of a slot: a code or the resting value.
 ShortSlot ColumnDecoder::shown(std::uint32_t slot) const {
     if (slot == 0) return grid_.rules.rest;
     return slot < grid_.rules.firstInactive ? ShortSlot(slot) : ShortSlot{0};
 }
 
-// Adds a block's deltas, slice by slice.
 bool ColumnDecoder::addBlock(const glm::ivec3& position, const BlockDeltas& deltas,
                              ShortSlot* out) {
     std::uint64_t& count = slabDeltas_[std::size_t(grid_.layout.slabOf(position.x))];
@@ -220,8 +219,7 @@ bool ColumnDecoder::addBlock(const glm::ivec3& position, const BlockDeltas& delt
     return true;
 }
 
-// Writes what a slice of a block shows, behind the last slice nothing; returns whether it is
-// sound.
+// Writes the shown values of a slice, or zeros behind the last slice. Returns whether it is sound.
 bool ColumnDecoder::writeSlice(const glm::ivec3& position, int s, ShortSlot* out) const {
     if (!grid_.layout.hasSlice(8 * position.x + s)) {
         std::fill_n(out, 64, ShortSlot{0});
@@ -253,8 +251,8 @@ bool ColumnDecoder::addTile(const glm::ivec3& position, ShortSlot slot,
     return add({position, nullptr, slot, Code(slot - 1), Code(slot - 1)}, 512, blocks);
 }
 
-// Adds a block, unless it is to be left out. One delta can stand for as many blocks as there are
-// slices until the next key slice: what is more than the file says is not waited for.
+// Adds a block unless it is left out. One delta can stand for all blocks until the next key slice,
+// so decoding stops as soon as the header's voxel count is exceeded.
 bool ColumnDecoder::add(const SlotBlock& block, std::uint64_t active,
                         std::vector<SlotBlock>& blocks) {
     constexpr std::size_t kAskEvery = 1024;
@@ -269,7 +267,6 @@ bool ColumnDecoder::add(const SlotBlock& block, std::uint64_t active,
     return activeCount_ <= grid_.header.active;
 }
 
-// Widens the box by a block's active voxels.
 void ColumnDecoder::extend(const glm::ivec3& position, const ShortSlot* out) {
     if (grid_.header.restActive || contains(position)) return;
     glm::ivec3 low(7), high(0);

@@ -24,7 +24,7 @@ namespace deltasplat {
 class SeenCodes;
 struct DeltaHeader;
 
-/// Where the blocks of a delta grid lie, in (slice, u, v) order.
+/// The layout of a delta grid's blocks, in (slice, u, v) order.
 class BlockLayout {
   public:
     explicit BlockLayout(const DeltaHeader& header);
@@ -32,18 +32,17 @@ class BlockLayout {
     int slabs() const { return slabOf(lastBlock.x) + 1; }
     int slabOf(int block) const { return (block - firstBlock.x) / blocksPerSlab; }
     bool startsSlab(int block) const { return (block - firstBlock.x) % blocksPerSlab == 0; }
-    /// Returns the first block behind the slab of one.
+    /// Returns the first block behind the slab of `block`.
     int endOfSlab(int block) const { return blocksOf(slabOf(block)).y + 1; }
     /// Returns the first and the last block of a slab.
     glm::ivec2 blocksOf(int slab) const;
-    /// How many columns the box has, with deltas or without.
+    /// Returns the number of columns in the box, with deltas or without.
     double columns() const;
     bool hasColumn(const glm::ivec2& place) const;
     bool hasSlice(int slice) const { return slice >= first.x && slice <= last.x; }
-    /// Returns the voxels of a slice of a block that are in the box, as a mask word.
+    /// Returns the voxels of a block's slice that are in the box, as a mask word.
     std::uint64_t insideOf(const glm::ivec2& place) const;
-    /// Whether all blocks can be listed where what rests is active.
-    /// @param changed  how many have deltas
+    /// Whether blocks with resting active voxels are few enough to list, if `changed` have deltas.
     bool canListRest(std::size_t changed) const;
 
     glm::ivec3 first, last;  ///< voxels of the box, inclusive
@@ -51,58 +50,54 @@ class BlockLayout {
     int blocksPerSlab;
 };
 
-/// Returns which slots a delta grid of codes may have.
+/// Returns the slots that a delta grid of codes may have.
 SlotRules slotRulesOf(const DeltaHeader& header);
 
-/// Returns the range of the active voxels' codes in blocks; nothing if there are none.
+/// Returns the range of the active voxels' codes in blocks, or nothing without any.
 CodeRange rangeOf(std::span<const SlotBlock> blocks);
-/// Returns the range of the codes of both.
 CodeRange rangeOfBoth(const CodeRange& a, const CodeRange& b);
 
-/// Returns what decoders have counted, as Volume::histogram: of codes, not of slots.
+/// Returns the decoders' counts as Volume::histogram: of codes instead of slots.
 std::vector<std::uint64_t> takeHistogram(CodeCounts& slots);
 
-/// Adds up deltas to blocks, column by column. For one thread at a time.
+/// Adds up deltas to blocks, column by column. Not thread-safe.
 class ColumnDecoder {
   public:
-    /// What is common to those of all threads; outlives them.
+    /// Data shared by the decoders of all threads; outlives them.
     struct Grid {
         const DeltaHeader& header;
         const BlockLayout& layout;
         SlotRules rules;
         const std::string& where;  ///< for messages
-        /// Null, or leaves blocks out that have none of these codes.
+        /// Null, or the codes that a block must have to be kept.
         const SeenCodes* seen = nullptr;
     };
 
-    /// @param counts  null, or counts slots
-    /// @param worker  of them
+    /// @param counts  null, or counts the slots of decoder number `worker`
     ColumnDecoder(std::unique_ptr<DeltaWalker> walker, const Grid& grid, CodeCounts* counts,
                   std::size_t worker);
 
-    /// Adds the blocks of a column that have active voxels; returns whether it is sound.
-    /// @param range  first and last block of slices to be gone over; the first begins a slab
-    /// @throw Error(kFailed) if memory does not hold them
+    /// Adds a column's blocks that have active voxels. Returns whether the column is sound.
+    /// @param range  first and last block of slices; the first begins a slab
+    /// @throw Error(kFailed) if memory is too small
     bool decode(const DeltaColumn& column, const glm::ivec2& range, std::vector<SlotBlock>& blocks);
 
-    /// The codes of those blocks of the last column that were left out.
+    /// Range of the codes of the last column's blocks that were left out.
     const CodeRange& leftOut() const { return leftOut_; }
-    /// How many deltas each slab had so far.
+    /// Number of deltas per slab so far.
     std::span<const std::uint64_t> slabDeltas() const { return slabDeltas_; }
-    /// The box of active voxels so far, in (slice, u, v) order; not of what rests.
+    /// Box of the active voxels so far, in (slice, u, v) order, without resting voxels.
     const IndexBox& active() const { return active_; }
-    /// How many active voxels the blocks so far have, those left out too.
+    /// Number of active voxels so far, left-out blocks included.
     std::uint64_t activeCount() const { return activeCount_; }
-    /// What the blocks' slots lie in.
     SlotStorage& storage() { return storage_; }
-    /// Forgets the slots of all blocks so far.
     void dropSlots() {
         if (storage_.size() > 1) storage_.resize(1);
         used_ = 0;
     }
 
   private:
-    static constexpr std::size_t kChunk = 64;  // blocks whose slots are asked for at once
+    static constexpr std::size_t kChunk = 64;  // blocks per allocation
 
     bool isConstant() const;
     ShortSlot shown(std::uint32_t slot) const;
@@ -126,9 +121,9 @@ class ColumnDecoder {
     IndexBox active_;
     std::uint64_t activeCount_ = 0;
     SlotStorage storage_;
-    std::size_t used_ = 0;  // blocks of the last of it
+    std::size_t used_ = 0;  // blocks in the last allocation
 
-    // Of the column in hand.
+    // State of the current column.
     std::array<std::uint32_t, 64> slots_{};
     std::uint64_t inside_ = 0;
     CodeRange leftOut_;

@@ -23,14 +23,14 @@
 namespace deltasplat {
 namespace {
 
-// A column to be decoded, or what of it one slab has.
+// A column to decode, or its part in one slab.
 struct Task {
     DeltaColumn column;
     glm::ivec2 range;                 // first and last block of slices
-    const DeltaPart* part = nullptr;  // what the file says of it; null: nothing
+    const DeltaPart* part = nullptr;  // the file's statement, or null
 };
 
-// Returns parts of so many slabs and all u and v of the box: those without deltas rest at `rest`.
+// Returns parts for all u and v of the box and `slabs` slabs; parts without deltas are at `rest`.
 std::vector<DeltaPart> withRest(const std::vector<DeltaPart>& parts, const BlockLayout& layout,
                                 int slabs, Code rest) {
     std::vector<DeltaPart> all;
@@ -51,7 +51,7 @@ std::string beginText(const BlockLayout& layout, const DeltaPart& part) {
     return placeText(8 * glm::ivec3(layout.blocksOf(part.slab).x, part.column.place));
 }
 
-// Returns what is wrong with blocks of these codes, if the file says that they have others.
+// Returns the contradiction between blocks' codes and the file's statement, if any.
 std::optional<std::string> problemOf(const CodeRange& range, const DeltaPart& part) {
     if (range == std::pair(part.lowest, part.highest)) return std::nullopt;
     return range ? "codes " + std::to_string(range->first) + ".." + std::to_string(range->second)
@@ -59,13 +59,12 @@ std::optional<std::string> problemOf(const CodeRange& range, const DeltaPart& pa
 }
 
 // Decodes columns on all threads.
-// @param counts  null, or counts slots
 class TaskDecoder {
   public:
     TaskDecoder(const StreamColumns& deltas, const ColumnDecoder::Grid& grid, std::size_t tasks,
                 bool counts)
         : grid_(grid) {
-        // What a thread keeps is large: one for each, not for each piece of work.
+        // Decoders are large: one per thread, not one per piece of work.
         pieces_ = (tasks + kPiece - 1) / kPiece;
         const std::size_t threads = std::min(std::size_t(std::max(1, threadCount())), pieces_);
         if (counts) counts_.emplace(std::max<std::size_t>(1, threads));
@@ -74,12 +73,12 @@ class TaskDecoder {
             decoders_.emplace_back(deltas.walker(), grid, counts_ ? &*counts_ : nullptr, i);
     }
 
-    // Returns the blocks in the order of tasks; nothing where deltas are not sound.
+    // Returns the blocks in the order of tasks, or nothing for unsound deltas.
     std::optional<std::vector<SlotBlock>> decode(std::span<const Task> tasks,
                                                  const Listener& listener);
-    // Of each task the codes of blocks that were left out.
+    // Range of the codes of left-out blocks, per task.
     std::vector<CodeRange> takeLeftOut() { return std::move(leftOut_); }
-    // Of each task how many active voxels it has.
+    // Number of active voxels per task.
     const std::vector<std::uint64_t>& active() const { return active_; }
     const std::vector<ColumnDecoder>& decoders() const { return decoders_; }
     CodeCounts* counts() { return counts_ ? &*counts_ : nullptr; }
@@ -104,7 +103,7 @@ class TaskDecoder {
 std::optional<std::vector<SlotBlock>> TaskDecoder::decode(std::span<const Task> tasks,
                                                           const Listener& listener) {
     std::vector<std::vector<SlotBlock>> blocks(pieces_);
-    // Of each piece the first that is not as the file says: which is told does not hang on threads.
+    // First contradiction per piece, so that the reported one does not depend on threads.
     std::vector<std::pair<const DeltaPart*, std::string>> problems(pieces_);
     std::atomic<bool> isSound = true;
     std::atomic<std::size_t> next = 0;
@@ -154,7 +153,7 @@ IndexBox inVolume(const IndexBox& box, int sliceAxis) {
     return {fromSliceOrder(box.min, sliceAxis), fromSliceOrder(box.max, sliceAxis)};
 }
 
-// Puts together what the threads found; returns whether it is what the header says.
+// Joins the results of all threads. Returns whether they match the header.
 bool collect(TaskDecoder& decoder, const DeltaHeader& header, DecodedBlocks& decoded) {
     decoded.histogram = takeHistogram(*decoder.counts());
     std::vector<std::uint64_t> slabDeltas(header.slabDeltas.size());
@@ -170,7 +169,7 @@ bool collect(TaskDecoder& decoder, const DeltaHeader& header, DecodedBlocks& dec
     return slabDeltas == header.slabDeltas && count == header.active;
 }
 
-// Whether a header and the places of deltas go together.
+// Whether a header and the places of deltas fit together.
 bool mayBeSound(const StreamColumns& deltas, const DeltaHeader& header, const BlockLayout& layout,
                 const SlotRules& rules) {
     const auto isInside = [&](const DeltaColumn& column) { return layout.hasColumn(column.place); };
@@ -189,8 +188,7 @@ std::vector<Task> tasksOf(const std::vector<DeltaPart>& parts, const BlockLayout
     return tasks;
 }
 
-// What the file says of columns, those at rest too if what rests is active: by slabs if it says
-// which codes they have.
+// Returns all columns, or their parts per slab if the file states codes; with active resting ones.
 std::vector<DeltaPart> allParts(const StreamColumns& deltas, const DeltaHeader& header,
                                 const BlockLayout& layout, const SlotRules& rules,
                                 const std::string& where) {
@@ -210,7 +208,7 @@ std::vector<DeltaPart> allParts(const StreamColumns& deltas, const DeltaHeader& 
     return header.restActive ? withRest(parts, layout, slabs, Code(rules.rest - 1)) : parts;
 }
 
-// Decodes what a file says the codes of, when it is asked for.
+// Decodes parts of known codes on demand.
 class PartMaker : public BlockMaker {
   public:
     PartMaker(std::shared_ptr<const DeltaHeader> header,
@@ -228,7 +226,7 @@ class PartMaker : public BlockMaker {
             const glm::ivec3 first(layout_.blocksOf(part.slab).x, part.column.place);
             parts_.push_back({first, part.lowest, part.highest});
         }
-        // Of other columns the index has been checked.
+        // Other columns were checked with the index.
         if (header_->restActive && deltas_->knownCodes()->all.histogram[rules_.rest - 1] == 0)
             throw Error(ErrorCode::kInput, where, "no voxels that rest", "some");
     }
@@ -250,7 +248,7 @@ class PartMaker : public BlockMaker {
     }
 
   private:
-    // Compares how many voxels the parts made so far have.
+    // Compares the number of active voxels in all parts made so far with the header.
     void checkActive() const {
         std::uint64_t sum = 0;
         bool areAll = true;
@@ -260,7 +258,7 @@ class PartMaker : public BlockMaker {
         }
         if (areAll || sum > header_->active) requireActiveCount(sum, *header_, where_);
     }
-    // Says which part is damaged, the first of them.
+    // Reports the first damaged part.
     [[noreturn]] void fail(const std::vector<DeltaPart>& parts) const {
         const auto isDamaged = [&](const DeltaPart& part) {
             TaskDecoder decoder(*deltas_, {*header_, layout_, rules_, where_}, 1, false);
@@ -268,7 +266,7 @@ class PartMaker : public BlockMaker {
             return !decoder.decode({&task, 1}, {});
         };
         const auto first = std::find_if(parts.begin(), parts.end(), isDamaged);
-        // Together they may have more voxels than each alone.
+        // Only together may the parts have too many voxels.
         const DeltaPart& part = first == parts.end() ? parts.front() : *first;
         throw Error(ErrorCode::kInput, where_,
                     "damaged deltas from " + beginText(layout_, part) + " on",
@@ -281,8 +279,8 @@ class PartMaker : public BlockMaker {
     BlockLayout layout_;
     SlotRules rules_;
     std::vector<DeltaPart> deltaParts_;
-    std::vector<Part> parts_;                                   // of each the same
-    mutable std::vector<std::optional<std::uint64_t>> active_;  // voxels of those made so far
+    std::vector<Part> parts_;                                   // per delta part
+    mutable std::vector<std::optional<std::uint64_t>> active_;  // voxels of the parts made so far
 };
 
 }  // namespace
@@ -313,7 +311,7 @@ std::optional<DecodedBlocks> decodeBlocks(const StreamColumns& deltas, const Del
     if (!known) {
         for (Task& task : tasks) task = {task.column, {layout.firstBlock.x, layout.lastBlock.x}};
     }
-    // Nearly all of them become blocks; how many more there are is seen on the way.
+    // Nearly all blocks with deltas need slots; the need for more shows on the way.
     requireMemory(where, double(deltas.blocks()) * 512 * sizeof(ShortSlot));
     TaskDecoder decoder(deltas, {header, layout, rules, where}, tasks.size(), true);
     std::optional<std::vector<SlotBlock>> blocks = decoder.decode(tasks, listener);

@@ -26,14 +26,14 @@
 namespace deltasplat {
 namespace {
 
-// A block's place in (slice, u, v) order, divided by 8.
+// Returns a block's place in (slice, u, v) order, divided by 8.
 template <typename DeltaLeaf>
 glm::ivec3 blockOf(const DeltaLeaf& leaf) {
     const openvdb::Coord origin = leaf.origin();
     return {origin.x() >> 3, origin.y() >> 3, origin.z() >> 3};
 }
 
-// What slots are where values have codes: how they add up, and what they stand for.
+// Arithmetic and meaning of slots for codes.
 class CodeWords {
   public:
     using Slot = std::uint32_t;
@@ -72,7 +72,7 @@ class CodeWords {
     Code rest_ = 0;
 };
 
-// The same where slots are made of the values' own bits.
+// The same for slots made of the values' own bits.
 template <typename T>
 class ExactWords {
   public:
@@ -102,7 +102,6 @@ class ExactWords {
     T background_;
 };
 
-// The slots of one block and what became of them.
 template <typename Words>
 struct Block {
     using Leaf = typename Words::Tree::LeafNodeType;
@@ -112,8 +111,7 @@ struct Block {
     typename Words::Slot tile = 0;  // of the whole block, if there is no leaf
 };
 
-// One delta can stand for as many blocks as there are slices until the next key slice, so memory is
-// asked for as it is needed.
+// Blocks per request for memory: one delta can stand for all blocks until the next key slice.
 constexpr std::size_t kAskEvery = 1024;
 
 template <typename Words>
@@ -146,7 +144,7 @@ class Decoder {
         }
     }
 
-    // Decodes a column: the leaves of one slab with the same u and v, in the order of slices.
+    // Decodes a column: leaves of one slab with the same u and v, in the order of slices.
     std::vector<Block<Words>> decodeColumn(const DeltaLeaf* const* begin,
                                            const DeltaLeaf* const* end) const {
         std::vector<Block<Words>> blocks;
@@ -181,7 +179,6 @@ class Decoder {
                place.y <= last_.y && place.z >= first_.z && place.z <= last_.z;
     }
 
-    // Adds one slice's deltas to the slots.
     void addSlice(const DeltaLeaf& leaf, int s, std::array<Slot, 64>& slots) const {
         std::uint64_t word = leaf.getValueMask().template getWord<std::uint64_t>(openvdb::Index(s));
         const auto* deltas = leaf.buffer().data() + 64 * s;
@@ -253,10 +250,10 @@ class Decoder {
     glm::ivec3 first_;
     glm::ivec3 last_;
     int blocksPerSlab_;
-    Slot inactiveValues_;  // how many there are
+    Slot inactiveValues_;  // their number
 };
 
-// Other programs may have made tiles of what this one writes as voxels.
+// Other programs may have made tiles of voxels.
 template <typename Tree>
 void voxelizeTiles(Tree& tree, const std::string& where) {
     const double voxels = double(tree.activeVoxelCount()) - double(tree.activeLeafVoxelCount());
@@ -265,7 +262,7 @@ void voxelizeTiles(Tree& tree, const std::string& where) {
     tree.voxelizeActiveTiles();
 }
 
-// Returns the leaves, ordered by slab, u, v and slice.
+// Returns the leaves by slab, u, v and slice.
 template <typename Tree, typename Words>
 std::vector<const typename Tree::LeafNodeType*> orderedLeaves(const Tree& tree,
                                                               const Decoder<Words>& decoder) {
@@ -280,7 +277,7 @@ std::vector<const typename Tree::LeafNodeType*> orderedLeaves(const Tree& tree,
     return leaves;
 }
 
-// Returns where in `leaves` each column begins, and at the end their number.
+// Returns the first index of each column in `leaves`, and their number at the end.
 template <typename DeltaLeaf, typename Words>
 std::vector<std::size_t> columnsOf(const std::vector<const DeltaLeaf*>& leaves,
                                    const Decoder<Words>& decoder) {
@@ -310,7 +307,6 @@ void checkSlabs(const std::vector<const DeltaLeaf*>& leaves, const Decoder<Words
     }
 }
 
-// Puts blocks into the trees.
 template <typename Words>
 class Collector {
   public:
@@ -339,7 +335,7 @@ class Collector {
   private:
     using Node = typename Tree::RootNodeType::ChildNodeType::ChildNodeType;
 
-    // What is more than the file says is not waited for.
+    // Stops as soon as the header's voxel count is exceeded.
     void count(const Block<Words>& block) {
         if (header_.restActive) return;
         if (block.values) active_ += block.values->onVoxelCount();
@@ -350,7 +346,7 @@ class Collector {
                     std::to_string(header_.active) + ", as \"delta_active\" says");
     }
 
-    // Tiles are small, but not the nodes that they are in.
+    // Tiles are small, but their nodes are not.
     void askForNode(const openvdb::Coord& corner) {
         constexpr int kAtOnce = 64;
         if (values_.template probeConstNode<Node>(corner)) return;
@@ -370,7 +366,7 @@ template <typename Tree>
 void fillRest(const DeltaHeader& header, typename Tree::ValueType rest, const std::string& where,
               Tree& tree) {
     const glm::ivec3 low = header.box.min, high = header.box.max;
-    // A filled box has leaves at its faces and, within, a root tile for each 4096^3 voxels.
+    // A filled box has leaves at its faces and a root tile per 4096^3 voxels inside.
     const glm::dvec3 dims(header.box.dims());
     const double faces = 2 * (dims.x * dims.y + dims.y * dims.z + dims.z * dims.x);
     requireClaimedMemory(where, faces / 64 * leafBytes<typename Tree::LeafNodeType>() +
@@ -390,19 +386,19 @@ void decode(typename Words::DeltaTree& deltas, const DeltaHeader& header, const 
     const auto leaves = orderedLeaves(deltas, decoder);
     checkSlabs(leaves, decoder, header, where);
 
-    // Without empty places all voxels of the box are active, before any of them takes memory.
+    // Checks the count first: without empty places, the whole box is active.
     if (header.restActive && header.inactiveValues.empty())
         requireActiveCount(voxelsOf(header.box), header, where);
     if (header.restActive && !header.box.empty()) fillRest(header, words.rest(), where, values);
     const std::vector<std::size_t> columns = columnsOf(leaves, decoder);
     Collector<Words> collector(header, words, where, values, inactive);
-    // In portions, so that memory is asked for as it is needed.
+    // Portions let memory be requested step by step.
     constexpr std::size_t kPortion = 2048;
     for (std::size_t begin = 0; begin + 1 < columns.size(); begin += kPortion) {
         const std::size_t count = std::min(kPortion, columns.size() - 1 - begin);
         const int blocksPerColumn = header.keyInterval / 8;
         double mostBlocks = double(count) * blocksPerColumn;
-        // Of those without deltas each has a voxel that is active.
+        // Each block without deltas has at least one active voxel.
         if (!header.restActive && header.inactiveValues.empty())
             mostBlocks = std::min(mostBlocks, double(header.active) + double(leaves.size()));
         requireClaimedMemory(where, mostBlocks * sizeof(Block<Words>));

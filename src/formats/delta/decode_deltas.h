@@ -11,31 +11,29 @@
 
 namespace deltasplat {
 
-/// What the deltas of a volume add up to, in the volume's own index space.
+/// The sum of a volume's deltas, in the volume's own index space.
 struct DecodedDeltas {
     std::shared_ptr<CodeTree> codes = std::make_shared<CodeTree>();
-    /// Active where the volume has inactive voxels with a value of their own; holds the value's
-    /// number in DeltaHeader::inactiveValues.
+    /// Active at inactive voxels with other values; holds the index in DeltaHeader::inactiveValues.
     std::shared_ptr<CodeTree> inactive = std::make_shared<CodeTree>();
 };
 
-/// The same of a source whose values stand for themselves (DeltaHeader::exact).
+/// The same for a source stored by its values' own bits (DeltaHeader::exact).
 struct DecodedValues {
-    /// Of the type DeltaHeader::exact, with the source's background; 0 if it has none.
+    /// Has type DeltaHeader::exact and the source's background, or 0 if the source has none.
     std::shared_ptr<openvdb::TreeBase> values;
     std::shared_ptr<CodeTree> inactive = std::make_shared<CodeTree>();  ///< as above
 };
 
 /// Adds up the deltas along the slices, slab by slab. Active tiles of `grid` become voxels.
 /// Multi-threaded; deterministic.
-/// @param grid  as isDeltaGrid says, of codes
-/// @throw Error(kInput) if the deltas contradict the header or lead outside of the code book, or if
-///        the header alone asks for more than memory holds; Error(kFailed) if the codes do not fit
-///        into memory, whatever the listener throws
+/// @param grid  a delta grid of codes
+/// @throw Error(kInput) if deltas contradict the header, leave the code book or claim too much
+///        memory; Error(kFailed) if memory is too small; whatever the listener throws
 DecodedDeltas decodeDeltas(TreeGrid& grid, const DeltaHeader& header, const std::string& where,
                            const Listener& listener);
 
-/// As decodeDeltas, of a grid of exact values.
+/// Does the same for a grid of exact values.
 DecodedValues decodeValues(TreeGrid& grid, const DeltaHeader& header, const std::string& where,
                            const Listener& listener);
 

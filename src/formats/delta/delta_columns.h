@@ -14,45 +14,44 @@
 
 namespace deltasplat {
 
-/// Returns a place as messages have it: "(1, 2, 3)".
+/// Returns a place for messages: "(1, 2, 3)".
 inline std::string placeText(const glm::ivec3& v) {
     return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) +
            ")";
 }
 
-/// Deltas of a block of 8x8x8 voxels, as numbers without sign (zigzag.h).
-/// @tparam Number  of 32 or 64 bits
+/// Zigzag deltas (exact_slots.h) of 32 or 64 bits of a block of 8x8x8 voxels.
 template <typename Number>
 struct BlockDeltasOf {
-    std::array<std::uint64_t, 8> changed;  ///< by slice: bit 8 u + v of each voxel with a delta
-    /// Likewise those that have a number: others than `changed` have 0.
+    std::array<std::uint64_t, 8> changed;  ///< per slice: bit 8 u + v of each voxel with a delta
+    /// Per slice: voxels with a number, which is 0 where `changed` has no bit.
     std::array<std::uint64_t, 8> given;
-    const Number* numbers = nullptr;  ///< of those given, by slice, u and v
+    const Number* numbers = nullptr;  ///< of the `given` voxels, by slice, u and v
 };
 using BlockDeltas = BlockDeltasOf<std::int32_t>;
 
 /// Blocks with the same u and v.
 struct DeltaColumn {
     glm::ivec2 place{0};    ///< u and v, divided by 8
-    std::size_t begin = 0;  ///< of what it is made of: who has it knows what that is
+    std::size_t begin = 0;  ///< range in the creator's own list
     std::size_t end = 0;
 };
 
-/// Goes over the blocks of a column that have deltas, in the order of slices.
+/// Visits the blocks of a column that have deltas, in the order of slices.
 class DeltaWalker {
   public:
     static constexpr int kNoBlock = std::numeric_limits<int>::max();
 
     virtual ~DeltaWalker() = default;
-    /// Goes to the first block; returns whether the column is sound so far.
+    /// Goes to the first block. Returns whether the column is sound so far.
     virtual bool start(const DeltaColumn& column) = 0;
-    /// Returns the slice of the next block, divided by 8; kNoBlock behind the last.
+    /// Returns the next block's slice, divided by 8, or kNoBlock at the end.
     virtual int block() const = 0;
-    /// Returns its deltas, until the next is taken, and goes on; null if they are damaged.
+    /// Returns this block's deltas, valid until the next call, and advances; null for damage.
     virtual const BlockDeltas* take() = 0;
 };
 
-/// The blocks of one slab with the same u and v, and which codes their deltas add up to.
+/// The blocks of one slab with the same u and v, and the codes that their deltas add up to.
 struct DeltaPart {
     DeltaColumn column;
     int slab = 0;
@@ -60,15 +59,15 @@ struct DeltaPart {
     Code highest = 0;
 };
 
-/// Which codes the voxels of a volume have, and where these are.
+/// Statistics of a volume's codes.
 struct CodesInUse {
     std::vector<std::uint64_t> histogram;  ///< as Volume::histogram
     IndexBox active;  ///< box of the active voxels, in the volume's index space
 };
 
-/// What a file says of the codes that its deltas add up to.
+/// A file's own statement of the codes that its deltas add up to.
 struct KnownCodes {
-    std::vector<DeltaPart> parts;  ///< those that have deltas, by u, v and slab
+    std::vector<DeltaPart> parts;  ///< parts with deltas, by u, v and slab
     CodesInUse all;
 };
 

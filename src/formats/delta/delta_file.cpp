@@ -34,13 +34,13 @@ void checkTolerance(const std::string& option, double tolerance) {
     throw Error(ErrorCode::kUsage, option, numberText(tolerance), "a number >= 0");
 }
 
-// The tolerance has to leave room for what the code book does to values.
+// Requires a tolerance of at least the code book's own errors.
 void requireRoom(const Tolerance& tolerance, const Volume& volume) {
-    const CodeBook& book = volume.codeBook;
+    const CodeBook& book = volume.codeBook();
     if (book.isExact() || tolerance.isExact()) return;
     double codeError = 0;
     for (int code = 0; code < kCodeCount; ++code) {
-        if (volume.histogram[std::size_t(code)] > 0)
+        if (volume.histogram()[std::size_t(code)] > 0)
             codeError = std::max(codeError, book.largestErrorOf(Code(code)));
     }
     const auto refuse = [&](const char* option, double got, const std::string& expected) {
@@ -61,8 +61,7 @@ void requireRoom(const Tolerance& tolerance, const Volume& volume) {
                "at least " + numberText(book.relativeError));
 }
 
-// Copies what the source says of itself, under names of its own, but for what is noted anew
-// whenever a file is written.
+// Copies the source's metadata under prefixed names, without the keys that writers set anew.
 void putSourceMetadata(const VdbMetadata& source, VdbMetadata& metadata) {
     const auto noted = fileMetadata();
     for (const auto& [name, entry] : source.entries()) {
@@ -97,26 +96,26 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
     requireRoom(options.tolerance, volume);
 
     const std::optional<Volume> scaled =
-        hasMap(volume.worldFromIndex) ? std::nullopt : std::optional(withHoldableUnit(volume));
-    const glm::dmat4& worldFromIndex = (scaled ? *scaled : volume).worldFromIndex;
-    const std::string& lengthUnit = (scaled ? *scaled : volume).lengthUnit;
-    const TreeGrid* const source = volume.source ? &volume.source->grid : nullptr;
+        hasMap(volume.worldFromIndex()) ? std::nullopt : std::optional(withHoldableUnit(volume));
+    const glm::dmat4& worldFromIndex = (scaled ? *scaled : volume).worldFromIndex();
+    const std::string& lengthUnit = (scaled ? *scaled : volume).lengthUnit();
+    const TreeGrid* const source = volume.source() ? &volume.source()->grid : nullptr;
     TakenDeltas taken = takeDeltas(volume, options, partOf(listener, 0, 0.6));
     DeltaHeader& header = taken.header;
     const InactiveValues& inactive = taken.inactive;
     TreeGrid grid{std::exchange(taken.deltas, nullptr), {}};
     if (options.pack) grid.tree = treeOfWords(streamOf(*grid.tree, header));
     listener.report(0.7);
-    if (source && volume.hasBackground) {
+    if (source && volume.hasBackground()) {
         header.sourceTree = source->type();
         header.sourceMap = source->map->type();
         putSourceMetadata(source->metadata, grid.metadata);
-        if (impl_->grids.empty()) impl_->fileMetadata = volume.source->fileMetadata;
+        if (impl_->grids.empty()) impl_->fileMetadata = volume.source()->fileMetadata;
     }
-    grid.metadata.insert(openvdb::GridBase::META_GRID_NAME, volume.name);
+    grid.metadata.insert(openvdb::GridBase::META_GRID_NAME, volume.name());
     grid.metadata.insert(openvdb::GridBase::META_GRID_CREATOR, std::string("deltasplat"));
     if (!lengthUnit.empty()) grid.metadata.insert(kLengthUnitKey, lengthUnit);
-    if (volume.labels) grid.metadata.insert(kLabelsKey, labelText(*volume.labels));
+    if (volume.labels()) grid.metadata.insert(kLabelsKey, labelText(*volume.labels()));
     grid.map = permutedMap(worldFromIndex, header.sliceAxis);
     putDeltaHeader(header, grid.metadata);
 
@@ -125,12 +124,12 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
     entry.keyInterval = header.keyInterval;
     entry.deltas = header.deltas();
     entry.codeBook = header.bookName();
-    if (header.exact || !volume.codeBook.isExact() || !options.tolerance.isExact()) {
-        // The real thing is measured: the deltas, added up again, against the source.
+    if (header.exact || !volume.codeBook().isExact() || !options.tolerance.isExact()) {
+        // Measures the real error: restores the volume and compares it with the source.
         ReadOptions reading;
         reading.levelSetToFog = false;
         reading.keepSource = true;
-        const Volume restored = readDeltaGrid(grid, {}, volume.name, reading, {});
+        const Volume restored(readDeltaGrid(grid, {}, volume.name(), reading, {}));
         entry.maxError = compareVolumes(restored, volume).maxError;
         header.maxError += entry.maxError;
         putDeltaHeader(header, grid.metadata);
@@ -138,15 +137,15 @@ DeltaFileEntry DeltaFile::add(const Volume& volume, const DeltaFileOptions& opti
     entry.maxError = header.maxError;
     entry.lossless = entry.maxError == 0 && !inactive.tooMany && !inactive.rounded;
     if (inactive.rounded)
-        listener.warn("grid \"" + volume.name +
+        listener.warn("grid \"" + volume.name() +
                       "\": the background, or what is inactive, has whole numbers beyond 2^53, "
                       "which are rounded");
     if (inactive.tooMany)
-        listener.warn("grid \"" + volume.name +
+        listener.warn("grid \"" + volume.name() +
                       "\": more than 65536 different values of inactive voxels; they become the "
                       "background");
     if (options.maxError && entry.maxError > *options.maxError) {
-        throw Error(ErrorCode::kFailed, "grid \"" + volume.name + "\"",
+        throw Error(ErrorCode::kFailed, "grid \"" + volume.name() + "\"",
                     "a largest error of " + numberText(entry.maxError),
                     "at most " + numberText(*options.maxError) + " (`maxError`)");
     }

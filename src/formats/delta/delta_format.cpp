@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kVersionKey = "delta_version";
 constexpr const char* kAxisNames[] = {"x", "y", "z"};
 
-// Reads entries of the metadata, each refused if it is not what it must be.
+// Reads entries of the metadata and refuses invalid ones.
 class Entries {
   public:
     Entries(const VdbMetadata& metadata, const std::string& where)
@@ -56,7 +56,7 @@ class Entries {
         return value;
     }
 
-    /// Returns the place of the text in the list of words.
+    /// Returns the index of the text in the list of words.
     int choice(const std::string& key, const std::vector<std::string>& words) const {
         std::string expected = "one of";
         for (const std::string& word : words) expected += " \"" + word + "\"";
@@ -195,7 +195,7 @@ void putBook(const DeltaHeader& header, VdbMetadata& metadata) {
         metadata.insert("delta_table", listText(*header.book.table));
 }
 
-// Exact values are of the source's type, or of one that holds all that a file's type can be.
+// Requires the source's own type, or no .vdb source at all.
 void requireExactTree(const Entries& entries, const DeltaHeader& header) {
     constexpr const char* kTrees[] = {"float", "double", "int32", "int64"};
     const std::string tree = kTrees[int(*header.exact)];
@@ -204,7 +204,7 @@ void requireExactTree(const Entries& entries, const DeltaHeader& header) {
                  "\"" + tree + "\", for the code book " + kExactNames[int(*header.exact)]);
 }
 
-// What rests has to be a code, and the source's type has to hold the background and the book.
+// Requires a resting value with a code, and a source type that holds background and book.
 void requireHeldValues(const Entries& entries, const DeltaHeader& header) {
     const double background = header.background;
     const auto refuse = [&](const std::string& expected) {
@@ -262,7 +262,7 @@ VdbMetadata allEntries(const DeltaHeader& header) {
     return all;
 }
 
-// The entries that are left out: those of an empty grid of floats.
+// Returns the entries that files leave out: those of an empty grid of floats.
 VdbMetadata usualEntries() {
     DeltaHeader usual;
     usual.keyInterval = 128;
@@ -275,7 +275,7 @@ VdbMetadata usualEntries() {
     return entries;
 }
 
-// Those of a grid with what it leaves out.
+// Adds the entries that a grid leaves out.
 VdbMetadata withUsualEntries(const VdbMetadata& metadata) {
     VdbMetadata all = metadata;
     const VdbMetadata usual = usualEntries();
@@ -348,7 +348,8 @@ DeltaHeader takeDeltaHeader(const VdbMetadata& stored, const std::string& where)
             "", "float", "double", "int32", "int64", "bool", "mask"}[std::size_t(entries.choice(
             "delta_source_tree", {"", "float", "double", "int32", "int64", "bool", "mask"}))];
     header.sourceMap = printable(metadata.text("delta_source_map"));
-    header.space = printable(metadata.text("delta_space"));
+    const std::string space = metadata.text("delta_space");
+    if (space == "RAS" || space == "LPS") header.space = space;
     header.background = entries.get<double>("delta_background", "a double");
     header.restActive = entries.choice("delta_rest", {"inactive", "active"}) == 1;
     requireHeldValues(entries, header);

@@ -15,7 +15,7 @@
 
 namespace deltasplat {
 
-/// Returns numbers as text with one space between, each the shortest that reads back the same.
+/// Returns numbers as text, separated by single spaces; each is the shortest that reads back equal.
 template <typename Number>
 std::string listText(const std::vector<Number>& numbers) {
     std::string text;
@@ -27,7 +27,7 @@ std::string listText(const std::vector<Number>& numbers) {
     return text;
 }
 
-/// Reads what listText writes; empty if the text is anything else.
+/// Reads the text of listText; returns nothing for any other text.
 template <typename Number>
 std::optional<std::vector<Number>> parseList(const std::string& text) {
     std::vector<Number> numbers;
@@ -43,18 +43,17 @@ std::optional<std::vector<Number>> parseList(const std::string& text) {
     return numbers;
 }
 
-/// What a delta grid's metadata says; docs/delta-grid.md specifies it.
+/// Metadata of a delta grid, specified in docs/delta-grid.md.
 struct DeltaHeader {
-    /// Of deltas as voxels.
+    /// Versions of deltas as voxels and of packed deltas.
     static constexpr int kVersion = 6;
-    /// Of packed deltas.
     static constexpr int kPackedVersion = 7;
 
     int version = kVersion;
     int sliceAxis = 2;
     int keyInterval = 8;
     IndexBox box;  ///< in the source's index space
-    /// Where there is one, slots are ExactSlots, and neither `book` nor `codeCount` means anything.
+    /// If set, slots are ExactSlots, and `book` and `codeCount` are meaningless.
     std::optional<ExactValues> exact;
     CodeBook book;
     int codeCount = kCodeCount;  ///< codes are below this
@@ -63,41 +62,39 @@ struct DeltaHeader {
     std::string sourceMap;   ///< type of the source's transform; empty: not from a .vdb
     std::string space;       ///< as Volume::space
     double background = 0;
-    bool restActive = false;  ///< what no delta speaks of is active (a volume without empty places)
-    std::vector<double> inactiveValues;     ///< of slots from kSlotCount, or firstInactive, on
+    bool restActive = false;  ///< voxels without deltas are active (a volume without empty places)
+    std::vector<double> inactiveValues;     ///< of slots from kSlotCount, or firstInactive(), on
     std::uint64_t active = 0;               ///< active voxels of the source
-    std::vector<std::uint64_t> slabDeltas;  ///< deltas of each slab
+    std::vector<std::uint64_t> slabDeltas;  ///< number of deltas per slab
     double tolerance = 0;
     double toleranceValue = 0;
     double maxError = 0;
 
     std::string bookName() const;
-    std::uint64_t deltas() const;  ///< of all slabs together
-    /// Whether deltas take 64 bits.
+    std::uint64_t deltas() const;  ///< sum of all slabs
     bool isWide() const { return exact && *exact != ExactValues::kFloat32; }
-    /// Whether the grid's voxels are words of a stream (delta_stream.h) in place of deltas.
+    /// Whether the voxels are the words of a stream (delta_stream.h) instead of deltas.
     bool isPacked() const { return version == kPackedVersion; }
 };
 
-/// Names of the source grid's own metadata in a delta grid begin with this.
+/// Prefix of the source grid's own metadata in a delta grid.
 inline constexpr const char* kSourcePrefix = "source:";
 
-/// Returns whether a grid is a delta grid of any version.
+/// Whether a grid is a delta grid of any version.
 bool isDeltaGrid(const TreeGrid& grid);
-/// Returns the same by a grid's value type ("int32", "int64") and metadata.
 bool isDeltaGrid(const std::string& valueType, const VdbMetadata& metadata);
 
-/// Adds the header to a grid's metadata, but for the entries of an empty grid of floats.
+/// Adds the header to a grid's metadata; leaves out the entries of an empty grid of floats.
 void putDeltaHeader(const DeltaHeader& header, VdbMetadata& metadata);
 
-/// Reads a delta grid's header and checks everything in it that can be checked without its voxels.
+/// Reads a delta grid's header and checks all that needs no voxels.
 /// @throw Error(kInput) at the first entry that is missing, of another type or out of range
 DeltaHeader takeDeltaHeader(const VdbMetadata& metadata, const std::string& where);
 
-/// Whether a volume has been read from deltas of its codes: then the codes are all that there is,
-/// and exact whatever their book was. Otherwise the values are those of `source`, if any.
+/// Whether a volume was read from deltas of its codes: then the codes are exact whatever the book,
+/// and nothing else exists. Otherwise `source`, if any, has the values.
 inline bool isOfCodes(const Volume& volume) {
-    return volume.origin && volume.origin->codeBook == volume.codeBook.name();
+    return volume.origin() && volume.origin()->codeBook == volume.codeBook().name();
 }
 
 }  // namespace deltasplat

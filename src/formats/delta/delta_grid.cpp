@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: "Accelerating Footprint Method Based on Comparability of Consecutive Image Slices",
-// equations 6 and 9: a slice is the slice before it plus what changed. Here the changes are codes
-// rather than colours, so that one grid serves every transfer function, and they lie in an OpenVDB
-// grid whose x axis is the slice number.
+// equations 6 and 9: a slice is the slice before it plus its changes. Here changes are codes
+// instead of colours, so that one grid serves every transfer function. They lie in an OpenVDB grid
+// whose x axis is the slice number.
 #include "formats/delta/delta_grid.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace {
 
 using Leaf = DeltaTree::Leaf;
 
-// What changes in a volume along one axis, block by block.
+// The changes of a volume along one axis, block by block.
 struct Differences {
     SlabLayout layout;
     BlockReader reader;
@@ -34,7 +34,7 @@ struct Differences {
     Differences(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap,
                 const SlabLayout& slabs, const CodeTree* inactive = nullptr)
         : layout(slabs),
-          reader(*volume.codes, inactive, sliceAxis, slotMap),
+          reader(*volume.codes(), inactive, sliceAxis, slotMap),
           windows(reader, layout),
           changes(findChanges(windows, layout)) {}
     // The windows refer to the reader.
@@ -44,7 +44,6 @@ struct Differences {
     int slabOf(std::size_t i) const { return layout.slabOf(windows.position(i).x); }
 };
 
-// Counts visible voxels and deltas of every slab.
 std::vector<SliceCounts> countSlabs(const Differences& differences) {
     std::vector<SliceCounts> counts(differences.layout.count());
     for (std::size_t i = 0; i < differences.changes.size(); ++i) {
@@ -65,7 +64,7 @@ std::vector<Slab> makeSlabs(const Differences& differences, const IndexBox& box)
     return slabs;
 }
 
-// Returns the leaf of a block's deltas, active where `words` says so.
+// Returns the leaf of a block's deltas, which are active in `words`.
 std::unique_ptr<Leaf> makeLeaf(const glm::ivec3& position, const BlockWindow& window,
                                const std::array<std::uint64_t, 8>& words) {
     auto leaf = std::make_unique<Leaf>(
@@ -110,11 +109,11 @@ std::shared_ptr<DeltaTree> makeTree(const Differences& differences) {
     return tree;
 }
 
-// Everything that is known before the volume's voxels are looked at.
+// Returns the facts that need no voxels.
 DeltaGrid gridWithoutSlabs(const Volume& volume, const DeltaOptions& options) {
     DeltaGrid grid;
     grid.sliceAxis = options.sliceAxis;
-    grid.box = permutedBox(volume.box, options.sliceAxis);
+    grid.box = permutedBox(volume.box(), options.sliceAxis);
     grid.keyInterval =
         options.keyInterval != 0 ? options.keyInterval : defaultKeyInterval(grid.box.dims().x);
     if (grid.keyInterval < 8 || grid.keyInterval % 8 != 0) {
@@ -141,7 +140,7 @@ int defaultKeyInterval(int sliceCount) {
 
 DeltaGrid makeDeltaGrid(const Volume& volume, const DeltaOptions& options) {
     DeltaGrid grid = gridWithoutSlabs(volume, options);
-    // A volume without active voxels may have inactive ones with values of their own.
+    // A volume without active voxels may still have inactive values.
     if (grid.box.empty()) return grid;
     const Differences differences(volume, options.sliceAxis, options.slotMap,
                                   layoutOf(grid.box, grid.keyInterval), options.inactive);
@@ -150,17 +149,17 @@ DeltaGrid makeDeltaGrid(const Volume& volume, const DeltaOptions& options) {
     return grid;
 }
 
-// Not the sum over slices: a few voxels far apart make a box of more slices than memory holds.
+// Uses one slab, not a count per slice: few voxels far apart span more slices than memory holds.
 SliceCounts countDeltas(const Volume& volume, int sliceAxis, std::span<const Slot> slotMap) {
     if (volume.empty()) return {};
-    const IndexBox box = permutedBox(volume.box, sliceAxis);
+    const IndexBox box = permutedBox(volume.box(), sliceAxis);
     return countSlabs(Differences(volume, sliceAxis, slotMap, oneSlab(box)))[0];
 }
 
 std::vector<SliceCounts> countDeltasPerSlice(const Volume& volume, int sliceAxis,
                                              std::span<const Slot> slotMap, int slicesEach) {
     if (volume.empty()) return {};
-    const IndexBox box = permutedBox(volume.box, sliceAxis);
+    const IndexBox box = permutedBox(volume.box(), sliceAxis);
     const std::size_t entries = std::size_t(box.dims().x - 1) / slicesEach + 1;
     requireMemory("counts of every slice", double(entries) * sizeof(SliceCounts));
     std::vector<SliceCounts> counts(entries);

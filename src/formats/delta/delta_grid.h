@@ -13,27 +13,26 @@
 
 namespace deltasplat {
 
-/// The deltas of one volume in (slice, u, v) index space. A leaf holds 8x8x8 of them, slice
-/// slowest: the 64 changes of one slice are contiguous, and one 64-bit mask word (bit 8 * u + v)
-/// says which there are.
+/// The deltas of a volume in (slice, u, v) index space. A leaf holds 8x8x8 deltas, slice slowest:
+/// the 64 deltas of a slice are contiguous, and bit 8 * u + v of its mask word marks each delta.
 struct DeltaTree {
     using Leaf = openvdb::Int32Tree::LeafNodeType;
 
     openvdb::Int32Tree::Ptr deltas = std::make_shared<openvdb::Int32Tree>(0);
-    std::vector<const Leaf*> leaves;  ///< of that, ordered by slice, then u, then v
+    std::vector<const Leaf*> leaves;  ///< leaves of `deltas`, by slice, u and v
 };
 
-/// A block's slots with the slice before it: everything that its deltas depend on.
+/// A block's slots and the slice before it: all that its deltas depend on.
 struct BlockWindow {
-    std::array<Slot, 64> before{};  ///< empty where a slab starts or nothing lies there
+    std::array<Slot, 64> before{};  ///< empty at a slab's start or behind a gap
     BlockSlots slots;
 
     const Slot* slice(int s) const { return &slots[64 * s]; }
     const Slot* sliceBefore(int s) const { return s == 0 ? before.data() : slice(s - 1); }
 };
 
-/// The places of a volume where visible voxels or deltas can be: its blocks, and the gap behind a
-/// block that ends within a slab, where what it showed must be taken away.
+/// The places of a volume that can have visible voxels or deltas: its blocks, and the gap behind a
+/// block that ends within a slab, where its slots must be taken away.
 class BlockWindows {
   public:
     BlockWindows(const BlockReader& reader, const SlabLayout& layout);
@@ -49,7 +48,7 @@ class BlockWindows {
         std::size_t block;
         bool behind;
     };
-    // Whether block i lies right behind block i - 1 and in the same slab.
+    // Whether block i follows block i - 1 in the same slab.
     bool continues(std::size_t i) const;
 
     const BlockReader& reader_;
@@ -57,14 +56,12 @@ class BlockWindows {
     std::vector<Place> places_;
 };
 
-/// Which of a block's voxels are visible, and which differ from the slice before: bit 8 * u + v of
-/// word s.
+/// A block's visible voxels, and those that differ from the slice before: bit 8 * u + v of word s.
 struct BlockChanges {
     std::array<std::uint64_t, 8> visible{};
     std::array<std::uint64_t, 8> changed{};
 };
 
-/// Returns the changes at every place of `windows`. Multi-threaded.
 std::vector<BlockChanges> findChanges(const BlockWindows& windows, const SlabLayout& layout);
 
 }  // namespace deltasplat

@@ -29,12 +29,11 @@ namespace deltasplat {
 
 namespace {
 
-/// Goes over the blocks of a part of a stream, in the order of slices.
-/// @tparam Number  std::int32_t, or std::int64_t where the header says so (deltaWidth)
+/// Visits a part's blocks as DeltaWalker does. Number is std::int64_t for wide deltas (deltaWidth).
 template <typename Number>
 class PartWalker {
   public:
-    /// @param words  of the stream, with kStreamPadding behind them
+    /// @param words  of the stream, followed by kStreamPadding
     PartWalker(const std::uint64_t* words, const DeltaHeader& header)
         : words_(words),
           lastBlock_(toSliceOrder(header.box.max, header.sliceAxis).x >> 3),
@@ -42,7 +41,6 @@ class PartWalker {
           code_{deltaWidth(header)},
           in_(words, 0) {}
 
-    /// Goes to the first block; returns whether the part is sound so far.
     bool start(const StreamPart& part) {
         in_ = BitReader(words_, 64 * part.begin);
         end_ = 64 * part.end;
@@ -53,15 +51,13 @@ class PartWalker {
         return advance();
     }
     bool isDone() const { return isDone_; }
-    /// Returns the slice of the block that is next, divided by 8; of a damaged part, where that is.
+    /// Returns the next block's slice, divided by 8; in a damaged part, the damaged place.
     int block() const { return block_; }
-    /// Returns the deltas of this block, until the next is taken, and goes on; null if the part is
-    /// damaged.
     const BlockDeltasOf<Number>* take() {
         if (!takeBlock() || in_.position() > end_) return nullptr;
         ++block_;
         isDone_ = left_-- == 0;
-        // Behind the last block less than a word is left.
+        // The last block is followed by less than a word.
         if (isDone_ ? in_.position() + 63 < end_ : !advance()) return nullptr;
         return &deltas_;
     }
@@ -69,7 +65,7 @@ class PartWalker {
   private:
     using Bits = std::make_unsigned_t<Number>;
 
-    // Goes over the blocks without deltas.
+    // Skips the blocks without deltas.
     bool advance() {
         const std::uint64_t gap = in_.takeNumber();
         if (gap >= std::uint64_t(behind_ - block_)) return false;
@@ -77,7 +73,7 @@ class PartWalker {
         return true;
     }
 
-    // Returns whether it is a block with deltas: otherwise it is damaged.
+    // Returns whether the block has deltas; otherwise it is damaged.
     bool takeBlock() {
         Bits* numbers = numbers_.data();
         std::uint64_t any = 0;
@@ -118,12 +114,12 @@ class PartWalker {
     int blocksPerSlab_;
     RiceCode code_;
 
-    // Of the part in hand.
+    // State of the current part.
     BitReader in_;
     std::size_t end_ = 0;  // bits
     int block_ = 0;
-    int behind_ = 0;          // no block of the part is this one
-    std::uint64_t left_ = 0;  // blocks behind this one
+    int behind_ = 0;          // first block outside of the part
+    std::uint64_t left_ = 0;  // blocks left behind this one
     bool isDone_ = true;
     BlockDeltasOf<Number> deltas_;
     std::array<Bits, 512> numbers_;
@@ -196,7 +192,7 @@ std::shared_ptr<Tree> StreamUnpacker::takeDeltas(const Listener& listener) const
     requireMemory(where_, double(countBlocks(words_.data(), parts)) * leafBytes<Leaf>());
     auto tree = std::make_shared<Tree>(0);
     openvdb::tree::ValueAccessor<Tree> accessor(*tree);
-    // In portions, so that what is in no tree yet is little.
+    // Portions limit the leaves that are in no tree yet.
     constexpr std::size_t kPortion = 2048;
     for (std::size_t begin = 0; begin < parts.size(); begin += kPortion) {
         const std::size_t count = std::min(kPortion, parts.size() - begin);
@@ -255,7 +251,7 @@ class StreamWalker : public DeltaWalker {
     }
 
   private:
-    // Goes to the next part; returns whether it is sound so far.
+    // Goes to the next part. Returns whether it is sound so far.
     bool goOn() {
         isDone_ = next_ == end_;
         return isDone_ || part_.start(parts_[next_++]);

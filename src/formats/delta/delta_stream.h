@@ -23,34 +23,30 @@ namespace deltasplat {
 
 struct DeltaHeader;
 
-/// How the 64 voxels of a slice of a block are written.
+/// How the 64 voxels of a block's slice are written.
 enum class SliceForm {
     kAll = 0,   ///< every number
-    kMask = 1,  ///< 64 bits that say which numbers are not 0, and those less 1
-    kRows = 2   ///< the same with 8 bits for rows and 8 for each row that is not empty
+    kMask = 1,  ///< a mask of 64 bits, then the numbers other than 0, less 1
+    kRows = 2   ///< the same with 8 bits for rows, and 8 per row that is not empty
 };
 
-/// Deltas as voxels.
 struct UnpackedDeltas {
     TreeGrid grid;
-    CodesInUse said;  ///< what they are to add up to; without a histogram if that is not known
+    CodesInUse said;  ///< the stream's own statement; no histogram if unknown
 };
 
-/// Unpacks a delta grid whose voxels are the words of a stream: numbers of few bits, first
-/// where its columns are, then the columns; docs/delta-grid.md specifies them.
-/// Multi-threaded.
+/// Unpacks a delta grid whose voxels are the words of a stream, specified in docs/delta-grid.md: an
+/// index of columns, then the columns. Multi-threaded.
 /// @param grid  of type int64
-/// @return a grid with the same metadata and transform whose voxels are deltas, as version 4 has
-///         them, within the header's box; what they say may contradict the header
-/// @throw Error(kInput) if the words have gaps, or the stream ends early or late or says what it
-///        cannot; Error(kFailed) if memory does not hold the deltas
+/// @return the same grid with deltas as voxels in the header's box; may contradict the header
+/// @throw Error(kInput) for gaps, a wrong end or an impossible index; Error(kFailed) without memory
 UnpackedDeltas unpackDeltas(const TreeGrid& grid, const DeltaHeader& header,
                             const std::string& where, const Listener& listener);
-/// Returns how many bits a delta without sign takes at most.
+/// Returns the most bits of a zigzag delta.
 int deltaWidth(const DeltaHeader& header);
 
-/// Sorts items by u, v and slice, and returns the columns that they make.
-/// @param blockOf  where an item is, (slice, u, v) divided by 8
+/// Sorts items by u, v and slice, and returns their columns.
+/// @param blockOf  returns an item's block: (slice, u, v) divided by 8
 template <typename T, typename BlockOf>
 std::vector<DeltaColumn> orderByColumns(std::vector<T>& items, const BlockOf& blockOf) {
     parallelSort(items, [&](const T& a, const T& b) {
@@ -69,25 +65,24 @@ std::vector<DeltaColumn> orderByColumns(std::vector<T>& items, const BlockOf& bl
     return columns;
 }
 
-/// Packed deltas of 32 bits: a stream whose words are the voxels of a file's leaves.
+/// Packed deltas of 32 bits: a stream of words from the leaves of a file.
 class StreamColumns {
   public:
-    /// Reads the words, on all threads.
+    /// Reads the words on all threads.
     /// @param leaves  of int64
-    /// @param header  outlives this
+    /// @param header  outlives this object
     /// @return nothing if the words have gaps
-    /// @throw Error(kInput) if the stream says what it cannot; Error(kFailed) if memory does not
-    ///        hold it
+    /// @throw Error(kInput) if the index is impossible; Error(kFailed) if memory is too small
     static std::optional<StreamColumns> read(const VdbLeaves& leaves, const DeltaHeader& header,
                                              const std::string& where);
 
-    /// Those that have deltas, by u and v.
+    /// Columns with deltas, by u and v.
     const std::vector<DeltaColumn>& columns() const { return columns_; }
-    /// How many blocks have deltas, at most.
+    /// Upper bound of the number of blocks with deltas.
     std::size_t blocks() const { return blocks_; }
-    /// Null if the file does not say which codes there are.
+    /// Null if the file does not state its codes.
     const KnownCodes* knownCodes() const { return knownCodes_ ? &*knownCodes_ : nullptr; }
-    /// Returns what one thread unpacks columns with. Thread-safe.
+    /// Returns a walker for one thread. Thread-safe.
     std::unique_ptr<DeltaWalker> walker() const;
 
   private:

@@ -27,10 +27,9 @@ namespace deltasplat {
 
 namespace {
 
-// Blocks of 8x8x8 voxels, one behind the other along the slices, that are not rest: one with voxels
-// of its own, or any number of one slot.
+// Blocks that do not rest: one with voxels of its own, or any number along the slices of one slot.
 struct Run {
-    glm::ivec3 position;  // of the first, in (slice, u, v) order, divided by 8
+    glm::ivec3 position;  // first block, in (slice, u, v) order, divided by 8
     int blocks;
 };
 
@@ -56,14 +55,14 @@ class Taker {
     int slabOf(int block) const { return (block - (first_.x >> 3)) / (options_.keyInterval / 8); }
     int slabs() const { return options_.box.empty() ? 0 : slabOf(last_.x >> 3) + 1; }
 
-    // Returns the runs of all that is not rest, column by column, in the order of slices.
+    // Returns the runs of all that does not rest, by columns and slices.
     std::vector<Run> runs() const {
         std::vector<Run> runs;
         for (auto leaf = tree_.cbeginLeaf(); leaf; ++leaf)
             addRuns(leaf->getNodeBoundingBox(), runs);
         addTiles(tree_.cbeginValueOn(), runs);
         if (const CodeTree* const inactive = options_.inactive.numbers.get()) {
-            // Those in leaves are met there.
+            // Leaves of both trees were added above.
             for (auto leaf = inactive->tree().cbeginLeaf(); leaf; ++leaf) {
                 if (!tree_.probeConstLeaf(leaf->origin()))
                     addRuns(leaf->getNodeBoundingBox(), runs);
@@ -77,7 +76,6 @@ class Taker {
         return runs;
     }
 
-    // Takes the differences of one column.
     Leaves takeColumn(const Run* begin, const Run* end) const {
         Column column(*this, begin->position);
         for (const Run* run = begin; run != end; ++run) {
@@ -92,7 +90,6 @@ class Taker {
     using SliceSlots = std::array<Slot, 64>;
     using BlockSlots = std::array<Slot, 512>;
 
-    // What has been met of a column.
     struct Column {
         Column(const Taker& of, const glm::ivec3& position)
             : taker(of), u(position.y), v(position.z), source(of.tree_) {
@@ -107,12 +104,12 @@ class Taker {
                 if (next == run.position.x) readBlock(next, slots);
                 takeBlock(next, slots);
                 ++next;
-                // Nothing changes within a run until the next key slice.
+                // Within a run, nothing changes until the next key slice.
                 while (next < end && taker.slabOf(next) == slab) ++next;
             }
         }
 
-        // Takes what has been met back to rest behind it.
+        // Lets the column return to rest behind its last block.
         void close() {
             const bool isOn =
                 std::any_of(held.begin(), held.end(), [](Slot slot) { return slot != 0; });
@@ -147,7 +144,6 @@ class Taker {
             if (leaf) leaves.push_back(std::move(leaf));
         }
 
-        // Reads a block's slots, slice by slice.
         void readBlock(int block, BlockSlots& slots) {
             const openvdb::Coord origin =
                 blockOrigin(glm::ivec3(block, u, v), taker.options_.sliceAxis);
@@ -183,7 +179,7 @@ class Taker {
         std::optional<openvdb::tree::ValueAccessor<const CodeTree::Tree>> inactive;
         SliceSlots held{};
         int slab = -1;
-        int next = 0;  // block behind those that have been met
+        int next = 0;  // block behind the last run
         Leaves leaves;
     };
 
@@ -271,7 +267,7 @@ ExactDeltas takeExactDeltas(const TreeGrid& grid, const ExactDeltaOptions& optio
 
 namespace {
 
-// Calls use(iterator) for all inactive voxels and tiles that do not hold the background.
+// Calls use(origin, value, box) for inactive voxels (without box) and tiles other than background.
 template <typename Tree, typename Use>
 void forInactive(const Tree& tree, const Use& use) {
     const auto background = double(tree.background());
@@ -291,7 +287,7 @@ void forInactive(const Tree& tree, const Use& use) {
     }
 }
 
-// Whether a grid has whole numbers that no double holds, where they are not active.
+// Whether inactive values or the background are whole numbers that no double holds.
 template <typename Tree>
 bool hasRounded(const Tree& tree) {
     using T = typename Tree::ValueType;

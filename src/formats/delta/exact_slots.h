@@ -13,15 +13,14 @@
 namespace deltasplat {
 
 /// Returns a delta (int32 or int64) as a number without sign: 0, -1, 1, -2, ... become 0, 1, 2, 3,
-/// ... Blosc puts bytes of equal weight together, and the upper ones of small negative numbers
-/// would be no zeros.
+/// ... Blosc groups bytes of equal weight, and small negative numbers would spoil its upper zeros.
 template <typename Delta>
 Delta toZigzag(Delta delta) {
     using Bits = std::make_unsigned_t<Delta>;
     return Delta((Bits(delta) << 1) ^ Bits(delta >> (8 * sizeof(Delta) - 1)));
 }
 
-/// Returns the delta that toZigzag made a number of; any number is one's.
+/// Inverts toZigzag; any number is valid.
 template <typename Delta>
 Delta fromZigzag(Delta number) {
     using Bits = std::make_unsigned_t<Delta>;
@@ -29,23 +28,21 @@ Delta fromZigzag(Delta number) {
     return Delta((bits >> 1) ^ (Bits{0} - (bits & 1u)));
 }
 
-/// Values that a delta grid stores by their own bits: those of a source that has more than 65536
-/// different ones.
+/// Value types that delta grids store by their bits: for more than 65536 different values.
 enum class ExactValues { kFloat32, kFloat64, kInt32, kInt64 };
 
-/// Names of the code books, in the order of ExactValues.
+/// Names of these code books, in the order of ExactValues.
 inline constexpr const char* kExactNames[] = {"float32", "float64", "int32", "int64"};
 
-/// The trees that have such values, in the order of ExactValues.
+/// Trees of these values, in the order of ExactValues.
 using ExactTrees =
     TreeTypes<openvdb::FloatTree, openvdb::DoubleTree, openvdb::Int32Tree, openvdb::Int64Tree>;
 
-/// Returns whether a number is a value of a type that has a slot.
+/// Whether a number has a slot in the type.
 bool hasSlot(ExactValues type, double value);
 
-/// What voxels of a source with values of type T (float, double, std::int32_t or std::int64_t) are
-/// as numbers: in the order of their values, so that what is alike differs by little. Slots are
-/// added and subtracted modulo 2^32 (float) or 2^64.
+/// Slots for values of type T (float, double, std::int32_t or std::int64_t), in the order of
+/// values, so that similar values differ by little. Arithmetic is modulo 2^32 (float) or 2^64.
 template <typename T>
 struct ExactSlots {
     static constexpr bool kIsFloat = std::is_same_v<T, float>;
@@ -53,8 +50,7 @@ struct ExactSlots {
     using Delta = std::make_signed_t<Slot>;
     using DeltaTree = std::conditional_t<kIsFloat, openvdb::Int32Tree, openvdb::Int64Tree>;
 
-    /// Returns the slot of an active voxel, one of the range below; `value` is finite, and an int64
-    /// at most 2^63 - 65538.
+    /// Returns the slot of an active voxel. `value` is finite, and an int64 at most largest().
     static Slot slotOf(T value) {
         if constexpr (std::is_floating_point_v<T>) {
             return orderOfBits(std::bit_cast<Slot>(value)) + 1;
@@ -63,7 +59,6 @@ struct ExactSlots {
                    1;
         }
     }
-    /// Returns the value of an active voxel.
     static T valueOf(Slot slot) {
         if constexpr (std::is_floating_point_v<T>) {
             return std::bit_cast<T>(bitsOfOrder(Slot(slot - 1)));
@@ -74,13 +69,13 @@ struct ExactSlots {
     static bool isValue(Slot slot) { return slot >= lowest() && slot <= highest(); }
     static Slot lowest() { return slotOf(std::numeric_limits<T>::lowest()); }
     static Slot highest() { return slotOf(largest()); }
-    /// Returns the largest value that there is a slot for.
+    /// Returns the largest value with a slot: 2^63 - 65538 for int64.
     static T largest() {
         if constexpr (std::is_same_v<T, std::int64_t>)
             return std::numeric_limits<T>::max() - kCodeCount - 1;
         return std::numeric_limits<T>::max();
     }
-    /// Returns the slot of an inactive voxel that has the first of the inactive values.
+    /// Returns the slot of the first of the inactive values.
     static Slot firstInactive() { return highest() + 1; }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inner loops of adding up deltas, compiled once for each SIMD level.
+// Inner loops of adding up deltas, compiled once per SIMD level.
 #include "formats/delta/leaf_kernels.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "formats/delta/leaf_kernels.cpp"
 #include "hwy/foreach_target.h"
-// After foreach_target.h, as Highway asks.
+// Highway requires this order: after foreach_target.h.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -35,7 +35,7 @@ void addDeltasKernel(std::uint64_t word, const std::int32_t* HWY_RESTRICT deltas
         slots[std::countr_zero(word)] += std::uint32_t(fromZigzag(*deltas++));
 }
 
-// Of slots that all have values up to the highest.
+// Shortens slots if all values up to the highest are allowed.
 HWY_INLINE bool shortenValues(const std::uint32_t* HWY_RESTRICT slots, const SlotRules& rules,
                               ShortSlot* HWY_RESTRICT out) {
     const hn::CappedTag<std::uint32_t, 16> tag;
@@ -83,7 +83,7 @@ bool shortenSlotsKernel(const std::uint32_t* HWY_RESTRICT slots, const SlotRules
 SlotRange rangeOfKernel(const ShortSlot* HWY_RESTRICT slots) {
     const hn::CappedTag<ShortSlot, 32> tag;
     const auto one = hn::Set(tag, ShortSlot{1});
-    // Empty slots, less one, are the highest that there is.
+    // Subtracting one makes empty slots the highest number.
     auto lowest = hn::Set(tag, ShortSlot{0xffff});
     auto least = lowest;
     auto highest = hn::Zero(tag);

@@ -7,28 +7,27 @@
 
 namespace deltasplat {
 
-/// Which slots there may be.
+/// The slots that may occur.
 struct SlotRules {
     std::uint32_t lowest = 1;  ///< of active voxels, inclusive; below 65536
     std::uint32_t highest = 0;
     std::uint32_t firstInactive = 0;  ///< of inactive voxels with values of their own
     std::uint32_t inactiveCount = 0;
-    ShortSlot rest = 0;  ///< what empty slots are shown as
+    ShortSlot rest = 0;  ///< replaces empty slots
 };
 
-/// Adds the deltas of a slice of a block, as numbers without sign (zigzag.h), to the slots of the
-/// voxels that a mask word names; modulo 2^32.
+/// Adds a slice's zigzag deltas (exact_slots.h) to the slots of the voxels in a mask word; modulo
+/// 2^32. All kernels here give the same results at every SIMD level.
 /// @param deltas  of these voxels alone, in the order of the word's bits
 /// @param slots   [64]
 void addDeltas(std::uint64_t word, const std::int32_t* deltas, std::uint32_t* slots);
 
-/// Writes what 64 slots are shown as: those of inactive voxels as empty. Returns whether all of
-/// them are empty, or what the rules allow. The same at every SIMD level, as all of these.
+/// Writes the shown values of 64 slots, inactive voxels as empty. Returns whether all are allowed.
 bool shortenSlots(const std::uint32_t* slots, const SlotRules& rules, ShortSlot* out);
 
-/// What is in a block.
+/// Range of a block's slots.
 struct SlotRange {
-    ShortSlot lowest;   ///< of those that are not empty; 0 if all are
+    ShortSlot lowest;   ///< of slots that are not empty; 0 if all are empty
     ShortSlot highest;  ///< 0 if all are empty
     bool hasEmpty;
 };

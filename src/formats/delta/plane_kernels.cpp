@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers from planes of bits, compiled once for each SIMD level.
+// Decodes numbers from planes of bits, compiled once per SIMD level.
 #include "formats/delta/plane_kernels.h"
 
 #include <algorithm>
@@ -11,21 +11,21 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "formats/delta/plane_kernels.cpp"
 #include "hwy/foreach_target.h"
-// After foreach_target.h, as Highway asks.
+// Highway requires this order: after foreach_target.h.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Planes are gone over as bytes.
+// Planes are read as bytes.
 static_assert(std::endian::native == std::endian::little);
 
-// Bits of 64 numbers; one more than there are at most, as Highway reads masks of 8 bytes.
+// Bits of 64 numbers. One extra plane, because Highway reads masks of 8 bytes.
 template <std::size_t kMost>
 using Planes = std::array<std::uint64_t, kMost + 1>;
 
-// Returns a mask with the lowest bits where another has its ones, in their order.
+// Moves the lowest bits to the ones of a mask, in order.
 HWY_INLINE std::uint64_t deposit(std::uint64_t bits, std::uint64_t mask) {
 #if HWY_ARCH_X86_64 && HWY_TARGET <= HWY_AVX2 && !defined(HWY_DISABLE_BMI2_FMA)
     return _pdep_u64(bits, mask);
@@ -36,8 +36,7 @@ HWY_INLINE std::uint64_t deposit(std::uint64_t bits, std::uint64_t mask) {
 #endif
 }
 
-// Adds up planes to 64 bytes: each is worth as much as the first, or twice as much as the one
-// before.
+// Adds up planes to 64 bytes. All planes weigh the same, or each weighs twice the one before.
 template <bool kAreEqual>
 HWY_INLINE void addPlanes(const std::uint64_t* planes, int count, std::uint8_t* HWY_RESTRICT sums) {
     const hn::CappedTag<std::uint8_t, 64> tag;
@@ -56,7 +55,7 @@ HWY_INLINE void addPlanes(const std::uint64_t* planes, int count, std::uint8_t* 
 template <typename Number>
 HWY_INLINE std::uint64_t takeNumbers(BitReader& in, RiceCode code, int parameter, std::size_t count,
                                      Number* HWY_RESTRICT numbers) {
-    // Which numbers have a quotient of 1 or more, of 2 or more, ...
+    // Numbers with a quotient of at least 1, at least 2, ...
     Planes<RiceCode::kMostOnes> quotients;
     std::uint64_t larger = in.take(int(count));
     std::uint64_t any = larger;
@@ -85,14 +84,14 @@ HWY_INLINE std::uint64_t takeNumbers(BitReader& in, RiceCode code, int parameter
         addPlanes<false>(remainders.data() + bit, std::min(parameter - bit, 8), bytes);
         for (std::size_t n = 0; n < 64; ++n) numbers[n] |= Number(bytes[n]) << bit;
     }
-    // Those that are too large for a quotient. Damaged ones may be 0 all the same.
+    // Numbers too large for a quotient. Damaged ones may be 0 all the same.
     for (; larger != 0; larger &= larger - 1) {
         const int n = std::countr_zero(larger);
         numbers[n] = Number((numbers[n] & BitReader::lowBits(parameter)) |
                             in.take(code.width - parameter) << parameter);
         if (numbers[n] == 0) any &= ~(std::uint64_t{1} << n);
     }
-    // So may those whose quotient does not go into a number.
+    // So may numbers whose shifted quotient overflows.
     constexpr int kBits = int(8 * sizeof(Number));
     for (std::size_t n = 0; parameter > kBits - 4 && n < 64; ++n)
         if (numbers[n] == 0) any &= ~(std::uint64_t{1} << n);

@@ -39,15 +39,15 @@
 namespace deltasplat {
 namespace {
 
-/// Turns a delta grid of exact values into the volume that its source would be read as.
-/// @param volume  has its name, transform and origin, and is given the rest
+/// Turns a delta grid of exact values into the volume that reading its source would give.
+/// @param volume  has its name, transform and origin; receives the rest
 /// @throw as readDeltaGrid
 void readExactDeltas(TreeGrid& deltas, const DeltaHeader& header, const VdbMetadata& fileMetadata,
-                     const GridCodesOptions& options, Volume& volume);
+                     const GridCodesOptions& options, VolumeData& volume);
 
 namespace {
 
-// Hands on a tree's box, layer by layer.
+// Passes on a tree's box, layer by layer.
 template <typename Tree>
 void forEachLayer(const Tree& tree, const glm::ivec3& size, const DenseSource::LayerUse& use,
                   const Listener& listener) {
@@ -68,14 +68,14 @@ constexpr RawType kRawTypes[] = {RawType::kFloat32, RawType::kFloat64, RawType::
                                  RawType::kInt64};
 
 DenseSource denseSource(const TreeGrid& grid, const DeltaHeader& header,
-                        const GridCodesOptions& options, const Volume& volume) {
+                        const GridCodesOptions& options, const VolumeData& volume) {
     DenseSource source;
     source.where = options.where;
     source.name = volume.name;
     source.dims = glm::i64vec3(header.box.dims());
     source.type = kRawTypes[int(*header.exact)];
     source.bigEndian = std::endian::native == std::endian::big;
-    // Of 64 bits and without sign; whole numbers of other types are stored as such.
+    // Unsigned 64-bit values are stored as doubles; other types of whole numbers as themselves.
     source.standsForWhole = header.sourceType == "uint64";
     source.worldFromIndex = volume.worldFromIndex;
     source.space = header.space;
@@ -91,7 +91,7 @@ DenseSource denseSource(const TreeGrid& grid, const DeltaHeader& header,
 }  // namespace
 
 void readExactDeltas(TreeGrid& deltas, const DeltaHeader& header, const VdbMetadata& fileMetadata,
-                     const GridCodesOptions& options, Volume& volume) {
+                     const GridCodesOptions& options, VolumeData& volume) {
     const std::string& where = options.where;
     const Listener decoding = partOf(options.listener, 0, 0.5);
     Listener reading = partOf(options.listener, 0.5, 1);
@@ -101,9 +101,10 @@ void readExactDeltas(TreeGrid& deltas, const DeltaHeader& header, const VdbMetad
     if (header.restActive) {
         ReadOptions codesOnly = options.reading;
         codesOnly.keepSource = codesOnly.keepInexact = false;
-        // Who keeps the source has its values.
+        // A volume that keeps its source has the exact values.
         if (options.reading.keepSource && !options.reading.bits) reading.warning = {};
-        Volume dense = readDense(denseSource(source, header, options, volume), codesOnly, reading);
+        VolumeData dense =
+            readDense(denseSource(source, header, options, volume), codesOnly, reading).data();
         dense.origin = volume.origin;
         dense.type = header.sourceType;
         dense.gridClass = volume.gridClass;
@@ -123,7 +124,7 @@ void readExactDeltas(TreeGrid& deltas, const DeltaHeader& header, const VdbMetad
 
 namespace {
 
-// The delta grid's axes are the source's in (slice, u, v) order.
+// The delta grid's axes are the source's axes in (slice, u, v) order.
 glm::dmat4 sourceTransform(const openvdb::math::MapBase& map, int sliceAxis) {
     const glm::dmat4 permuted = matrixOf(map);
     const glm::ivec3 order = sliceOrder(sliceAxis);
@@ -150,10 +151,10 @@ std::string sourceClass(const VdbMetadata& metadata) {
     return found ? printable(*found) : kUnknownClass;
 }
 
-// All of a volume but its voxels.
-Volume describe(const DeltaHeader& header, const VdbMetadata& metadata,
-                const openvdb::math::MapBase& map, const std::string& where) {
-    Volume volume;
+// Returns a volume without voxels.
+VolumeData describe(const DeltaHeader& header, const VdbMetadata& metadata,
+                    const openvdb::math::MapBase& map, const std::string& where) {
+    VolumeData volume;
     volume.space = header.space;
     volume.lengthUnit = lengthUnitNamed(metadata.text(kLengthUnitKey));
     volume.labels = labelsIn(metadata);
@@ -164,7 +165,7 @@ Volume describe(const DeltaHeader& header, const VdbMetadata& metadata,
     return volume;
 }
 
-// The grid has the type that its code book asks for, or of packed deltas that of words.
+// Requires the type of the code book's deltas, or of words in a packed grid.
 void requireType(const TreeGrid& grid, const DeltaHeader& header, const std::string& where) {
     const std::string expected = header.isWide() || header.isPacked() ? "int64" : "int32";
     if (grid.type() == expected) return;
@@ -173,9 +174,8 @@ void requireType(const TreeGrid& grid, const DeltaHeader& header, const std::str
                     (header.isPacked() ? "packed deltas" : "the code book " + header.bookName()));
 }
 
-// @param active  box of the active voxels
 void fillVolume(const DeltaHeader& header, std::shared_ptr<const CodeTree> codes,
-                std::vector<std::uint64_t> histogram, const IndexBox& active, Volume& volume) {
+                std::vector<std::uint64_t> histogram, const IndexBox& active, VolumeData& volume) {
     volume.type = header.sourceType;
     volume.hasBackground = !header.restActive;
     volume.background = header.restActive ? 0 : header.background;
@@ -188,15 +188,16 @@ void fillVolume(const DeltaHeader& header, std::shared_ptr<const CodeTree> codes
 
 }  // namespace
 
-Volume readDeltaGrid(TreeGrid& stored, const VdbMetadata& fileMetadata, const std::string& where,
-                     const ReadOptions& options, const Listener& all) {
+VolumeData readDeltaGrid(TreeGrid& stored, const VdbMetadata& fileMetadata,
+                         const std::string& where, const ReadOptions& options,
+                         const Listener& all) {
     const DeltaHeader header = takeDeltaHeader(stored.metadata, where);
     requireType(stored, header, where);
     UnpackedDeltas unpacked;
     if (header.isPacked()) unpacked = unpackDeltas(stored, header, where, partOf(all, 0, 0.3));
     const Listener listener = partOf(all, header.isPacked() ? 0.3 : 0, 1);
     TreeGrid& grid = header.isPacked() ? unpacked.grid : stored;
-    Volume volume = describe(header, grid.metadata, *grid.map, where);
+    VolumeData volume = describe(header, grid.metadata, *grid.map, where);
     volume.name = grid.name();
     if (header.exact) {
         readExactDeltas(grid, header, fileMetadata, {listener, where, header.sourceType, options},
@@ -214,7 +215,7 @@ Volume readDeltaGrid(TreeGrid& stored, const VdbMetadata& fileMetadata, const st
     if (!header.sourceTree.empty() && (options.keepSource || changes)) {
         source = restoreGrid(header, decoded, grid, volume.worldFromIndex);
     }
-    // Values between two floats come back as the nearer one.
+    // Values between two floats become the nearer float.
     if (options.keepSource && header.sourceType == "float32" && !header.book.isExact()) {
         source = {treeFromCodes<openvdb::FloatTree>(decoded.codes->tree(), header.book, 0),
                   {},
@@ -235,14 +236,14 @@ Volume readDeltaGrid(TreeGrid& stored, const VdbMetadata& fileMetadata, const st
     return volume;
 }
 
-std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
-                                      const std::string& where, const ReadOptions& options,
-                                      const Listener& listener) {
+std::optional<VolumeData> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
+                                          const std::string& where, const ReadOptions& options,
+                                          const Listener& listener) {
     if (grid.type != "int64") return std::nullopt;
     const auto known = std::make_shared<DeltaHeader>();
     DeltaHeader& header = *known;
     std::unique_ptr<const StreamColumns> columns;
-    Volume volume;
+    VolumeData volume;
     try {
         const VdbMetadata metadata = file.metadata(grid);
         if (!isDeltaGrid(grid.type, metadata)) return std::nullopt;
@@ -250,7 +251,7 @@ std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
         const bool changes = (options.levelSetToFog || options.levelSetSurface) &&
                              sourceClass(metadata) == kLevelSetClass;
         if (!header.isPacked() || !mayDecodeBlocks(header) || changes) return std::nullopt;
-        // Exact codes say all of a volume without empty places.
+        // Exact codes are all of a volume without empty places.
         const bool codesAreAll = header.restActive && header.book.isExact();
         if (options.keepSource && !codesAreAll) return std::nullopt;
         const std::optional<VdbLeaves> leaves = file.readLeaves(grid, VdbFile::Find::kByNotes);
@@ -261,7 +262,7 @@ std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
         worldFromIndexOf(leaves->transform(), where);
         volume = describe(header, metadata, leaves->transform(), where);
     } catch (const Error& error) {
-        // What is wrong is said by who reads the grid as a whole.
+        // Reading the grid as a whole reports the error.
         if (error.code() != ErrorCode::kInput) throw;
         return std::nullopt;
     }

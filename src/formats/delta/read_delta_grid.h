@@ -10,20 +10,18 @@
 
 namespace deltasplat {
 
-/// Turns a delta grid into the volume that it was made from. Level sets become fog as
-/// `options.levelSetToFog` says.
-/// @param grid  as isDeltaGrid says; active tiles become voxels
+/// Turns a delta grid into its original volume. Level sets become fog if `options.levelSetToFog`.
+/// @param grid  a delta grid; active tiles become voxels
 /// @throw Error(kInput) if the grid is damaged; as readVolume
-Volume readDeltaGrid(TreeGrid& grid, const VdbMetadata& fileMetadata, const std::string& where,
-                     const ReadOptions& options, const Listener& listener);
+VolumeData readDeltaGrid(TreeGrid& grid, const VdbMetadata& fileMetadata, const std::string& where,
+                         const ReadOptions& options, const Listener& listener);
 
-/// Reads a packed delta grid of a file as a volume whose codes are blocks along its slices: the
-/// same volume, without an OpenVDB grid, where nothing of what is asked for needs one
-/// (decodeBlocks).
-/// @return nothing where it is another grid, is not sound, or is asked for otherwise
+/// Reads a packed delta grid of a file as the same volume, with blocks along its slices as codes
+/// (decodeBlocks), if `options` need no OpenVDB grid.
+/// @return nothing for other grids, unsound grids and other options
 /// @throw as decodeBlocks
-std::optional<Volume> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
-                                      const std::string& where, const ReadOptions& options,
-                                      const Listener& listener);
+std::optional<VolumeData> readDeltaBlocks(const VdbFile& file, const VdbGrid& grid,
+                                          const std::string& where, const ReadOptions& options,
+                                          const Listener& listener);
 
 }  // namespace deltasplat

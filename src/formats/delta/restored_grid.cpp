@@ -36,7 +36,7 @@ bool isUniform(const Node& node, typename Node::ValueType& value, bool& isActive
     return true;
 }
 
-// Called by OpenVDB for every node, children before their parents.
+// OpenVDB calls this for every node, children before parents.
 template <typename Tree>
 struct PruneNode {
     using Value = typename Tree::ValueType;
@@ -60,13 +60,12 @@ struct PruneNode {
 
 }  // namespace prune
 
-/// Makes tiles of nodes whose values and active states are all the same, bit for bit. OpenVDB's
-/// prune, asked for no tolerance, takes 0 and -0 for equal, NaN for anything, and whole numbers
-/// that lie more than half their type's range apart as well.
+/// Makes tiles of nodes whose values and states are equal bit for bit. OpenVDB's prune also equates
+/// 0 with -0, NaN with anything, and whole numbers more than half their type's range apart.
 template <typename Tree>
 void pruneSameBits(Tree& tree) {
     tree.clearAllAccessors();
-    // Nodes above leaves: those prune the leaves.
+    // Nodes above leaves, because these prune the leaves.
     openvdb::tree::NodeManager<Tree, Tree::DEPTH - 2> nodes(tree);
     nodes.foreachBottomUp(prune::PruneNode<Tree>());
 }
@@ -75,8 +74,7 @@ void pruneSameBits(Tree& tree) {
 
 namespace {
 
-// Sets what inactive voxels hold where that is not the background, and makes tiles of what is
-// uniform.
+// Sets the values of inactive voxels other than the background, and prunes the tree.
 template <typename Tree>
 void setInactive(const CodeTree::Tree& inactive, const std::vector<double>& values, Tree& tree) {
     openvdb::tree::ValueAccessor<Tree> accessor(tree);
@@ -105,7 +103,7 @@ std::shared_ptr<openvdb::TreeBase> restoredTree(const DeltaHeader& header,
     return restored;
 }
 
-// Returns the source's own metadata under their names.
+// Returns the source's own metadata under their original names.
 VdbMetadata sourceMetadata(const VdbMetadata& stored) {
     const std::string_view prefix = kSourcePrefix;
     VdbMetadata own;
@@ -116,7 +114,7 @@ VdbMetadata sourceMetadata(const VdbMetadata& stored) {
     return own;
 }
 
-// Gives a tree all of the source but its voxels.
+// Adds the source's metadata and transform to a tree.
 TreeGrid dressed(std::shared_ptr<openvdb::TreeBase> tree, const TreeGrid& deltas,
                  const DeltaHeader& header, const glm::dmat4& worldFromIndex) {
     return {std::move(tree), sourceMetadata(deltas.metadata),

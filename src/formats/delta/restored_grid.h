@@ -10,17 +10,15 @@
 
 namespace deltasplat {
 
-/// Makes the grid that deltas of codes were made from, a grid of a .vdb.
-/// @param deltas  has the source's metadata
+/// Restores a .vdb grid from the deltas of its codes. `deltas` has the source's metadata.
 TreeGrid restoreGrid(const DeltaHeader& header, const DecodedDeltas& decoded,
                      const TreeGrid& deltas, const glm::dmat4& worldFromIndex);
 
-/// The same from values that stand for themselves; a grid without metadata if the source was no
-/// .vdb.
+/// Does the same from exact values; a source that was no .vdb gives a grid without metadata.
 TreeGrid restoreGrid(const DeltaHeader& header, const DecodedValues& decoded,
                      const TreeGrid& deltas, const glm::dmat4& worldFromIndex);
 
-/// @throw Error(kInput) unless there are so many active voxels as the header says
+/// @throw Error(kInput) if the number of active voxels is not the header's
 void requireActiveCount(std::uint64_t active, const DeltaHeader& header, const std::string& where);
 
 }  // namespace deltasplat

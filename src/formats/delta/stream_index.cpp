@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <utility>
 
 #include "base/memory.h"
@@ -29,21 +30,20 @@ class IndexReader {
     [[noreturn]] void fail(const std::string& got, const std::string& expected) const {
         throw Error(ErrorCode::kInput, where_, got, expected);
     }
-    // Each part has a word, and bits in the stream, which both may be few in a file.
+    // A small file may claim many parts, although each takes a word and bits of the stream.
     [[noreturn]] void failTooMany(std::uint64_t words) const {
         fail("columns of " + std::to_string(words) + " words or more",
              "at most " + std::to_string(count_) + ", those of the whole stream");
     }
-    // What has been read has to lie before the end.
+    // Requires that all bits read so far lie before the end.
     void requireBits() const {
         if (in_.position() <= 64 * count_) return;
         fail("a stream of " + std::to_string(count_) + " words that ends early", "the rest of it");
     }
-    // Of each of slab, u and v there is what is more than in the part before, as far as those
-    // before it are the same.
+    // Takes the steps from the part before; a step in a slower coordinate resets the faster ones.
     void takePlace(glm::i64vec3& place, const glm::i64vec3& most);
     void takeRange(StreamPart& part);
-    // Takes the box of the active voxels, by how far its sides lie within the grid's.
+    // Takes the distances of the active voxels' box from the grid's sides.
     IndexBox takeBox();
     void requireSum();
     void requireCounted(const StreamIndex& index) const;
@@ -98,6 +98,8 @@ std::vector<std::uint64_t> IndexReader::takeHistogram() {
         code += gap;
         histogram[std::size_t(code)] = count + 1;
         left -= count + 1;
+        if (!std::isfinite(header_.book.valueOf(Code(code))))
+            fail("voxels of code " + std::to_string(code) + ", which is no number", "numbers");
     }
     if (left > 0) {
         fail("codes of " + std::to_string(header_.active - left) + " voxels",
@@ -122,14 +124,14 @@ IndexBox IndexReader::takeBox() {
     return box;
 }
 
-// What is not unpacked cannot show that the index is damaged.
+// Partial unpacking cannot notice a damaged index, so the sum must.
 void IndexReader::requireSum() {
     const std::uint64_t sum = streamSum(words_, in_.position() / 64);
     if (in_.take(64) != sum)
         fail("a stream whose beginning is damaged", "one with the sum it says");
 }
 
-// The codes that columns begin and end with are there.
+// Requires voxels of each column's lowest and highest code.
 void IndexReader::requireCounted(const StreamIndex& index) const {
     for (const StreamPart& part : index.parts) {
         if (index.histogram[part.lowest] == 0 || index.histogram[part.highest] == 0)
@@ -211,7 +213,7 @@ std::uint64_t streamSum(const std::uint64_t* words, std::size_t count) {
 }
 
 std::size_t countBlocks(const std::uint64_t* words, const std::vector<StreamPart>& parts) {
-    // One delta at least: its gap, 8 slices, a form, a parameter, rows, a row, a number.
+    // A block with one delta: gap, 8 slices, form, parameter, rows, one row, one number.
     constexpr std::size_t kFewestBits = 1 + 8 + 2 + 5 + 8 + 8 + 1;
     std::atomic<std::size_t> blocks = 0;
     parallelForChunks(parts.size(), [&](std::size_t begin, std::size_t end) {

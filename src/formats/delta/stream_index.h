@@ -15,47 +15,41 @@ namespace deltasplat {
 
 struct DeltaHeader;
 
-/// The deltas of one slab with the same u and v, as they lie in a stream of packed deltas
-/// (docs/delta-grid.md, "Packed deltas": there it is a column).
+/// The deltas of one slab with the same u and v in a stream: a "column" in docs/delta-grid.md.
 struct StreamPart {
     glm::ivec3 first{0};    ///< the slab's first block, in (slice, u, v) order, divided by 8
-    std::size_t begin = 0;  ///< of its words
+    std::size_t begin = 0;  ///< range of its words
     std::size_t end = 0;
-    /// Range of the active voxels' codes, if the stream says which there are.
+    /// Range of the active voxels' codes, if the stream states its codes.
     Code lowest = 0;
     Code highest = 0;
 };
 
-/// What a stream begins with.
+/// The front of a stream.
 struct StreamIndex {
     std::vector<StreamPart> parts;  ///< by slab, u and v
-    /// As Volume::histogram; empty if the stream does not say which codes there are.
+    /// As Volume::histogram; empty if the stream does not state its codes.
     std::vector<std::uint64_t> histogram;
-    /// Of the active voxels, in (slice, u, v) order, if it says so.
+    /// Box of the active voxels in (slice, u, v) order, if stated.
     IndexBox active;
 };
 
-/// More words than any block takes, of 512 numbers of 8 + 64 bits: so what is read behind the end
-/// of damaged words is there.
+/// More words than any block has (512 numbers of 8 + 64 bits): damaged words end within memory.
 inline constexpr std::size_t kStreamPadding = 1024;
 
-/// Reads what a stream begins with.
-/// @param words  all of the stream, `count` of them, with kStreamPadding behind them
-/// @throw Error(kInput) if the stream says what it cannot; Error(kFailed) if memory does not hold
-///        the parts
+/// @param words  all `count` words of the stream, with kStreamPadding behind them
+/// @throw Error(kInput) if the index is impossible; Error(kFailed) if memory is too small
 StreamIndex readStreamIndex(const std::uint64_t* words, std::size_t count,
                             const DeltaHeader& header, const std::string& where);
 
-/// Returns what a stream says of all its codes.
+/// Returns a stream's own statement of its codes.
 CodesInUse codesInUse(const StreamIndex& index, const DeltaHeader& header);
 
-/// Returns the CRC-32 of words, each from its lowest byte on: what a stream that says which codes
-/// there are has behind that.
+/// Returns the CRC-32 of words, lowest byte first, with which an index that states codes ends.
 std::uint64_t streamSum(const std::uint64_t* words, std::size_t count);
 
-/// Returns how many blocks parts say that they have, at most as many as their words can hold.
-/// Multi-threaded.
-/// @param words  that the parts' places count from, with kStreamPadding behind them
+/// Returns how many blocks parts claim, at most what their words can hold. Multi-threaded.
+/// @param words  of the stream, with kStreamPadding behind them
 std::size_t countBlocks(const std::uint64_t* words, const std::vector<StreamPart>& parts);
 
 }  // namespace deltasplat

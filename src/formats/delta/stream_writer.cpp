@@ -70,7 +70,7 @@ class LeafWalker : public DeltaWalker {
     std::array<std::int32_t, 512> numbers_;
 };
 
-// Of a volume without empty places, columns without deltas rest.
+// Columns without deltas rest in a volume without empty places.
 bool addRest(const DeltaHeader& header, const SlotRules& rules, StreamCodes& found) {
     const std::uint64_t counted =
         std::accumulate(found.histogram.begin(), found.histogram.end(), std::uint64_t{0});
@@ -154,7 +154,7 @@ glm::ivec3 blockAt(const openvdb::Coord& origin) {
     return {origin.x() >> 3, origin.y() >> 3, origin.z() >> 3};
 }
 
-// Writes a slice of a block: its 64 numbers, of which those of `changed` are not 0.
+// Writes a slice of a block: 64 numbers, 0 outside of `changed`.
 template <typename Number>
 void putSlice(std::uint64_t changed, const Number* numbers, RiceCode code, BitWriter& out) {
     std::array<Number, 64> all{};
@@ -202,7 +202,7 @@ void putBlock(const Leaf& leaf, RiceCode code, BitWriter& out) {
     }
 }
 
-// Where blocks are, in slabs, u and v, from the box's first on.
+// Positions of blocks in slabs, u and v, counted from the box's first block.
 class Places {
   public:
     explicit Places(const DeltaHeader& header)
@@ -237,7 +237,7 @@ BitWriter packColumn(std::span<const Leaf* const> leaves, int firstBlock, RiceCo
     return out;
 }
 
-// Writes where a column is, beside the one before, and how long.
+// Writes a column's place relative to the column before, and its length.
 void putColumn(const glm::ivec3& column, glm::ivec3& before, std::size_t words, BitWriter& out) {
     if (column.x != before.x) before = {before.x, 0, -1};
     if (column.y != before.y) before.z = -1;
@@ -300,7 +300,7 @@ std::vector<std::uint64_t> wordsOf(const Tree& deltas, const DeltaHeader& header
     std::size_t packed = 0;
     for (const BitWriter& column : columns) packed += column.words().size();
     if (codes) {
-        // So a file is hardly larger.
+        // Only if the file hardly grows.
         constexpr std::size_t kLeastShare = 50;
         std::vector<std::uint64_t> knowing = index(&*codes);
         if (knowing.size() <= words.size() + (words.size() + packed) / kLeastShare)

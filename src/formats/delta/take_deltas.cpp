@@ -33,28 +33,27 @@
 namespace deltasplat {
 namespace {
 
-/// Replaces codes of a volume so that along the slice axis a voxel keeps the value it has as long
-/// as that is within tolerance of the true one (compared with the true one each time, so that
-/// errors never add up). Holding starts anew where a slab does. Inactive voxels stay inactive, and
-/// voxels that `slotMap` makes empty neither hold nor are held. What the code book's values may be
-/// off is taken off the tolerance. Deterministic; multi-threaded.
+/// Changes codes so that a voxel keeps its value along the slice axis while the value is within
+/// tolerance of the true one. Comparing with the true value each time keeps errors from adding up.
+/// Each slab starts anew. Inactive voxels stay inactive; voxels that `slotMap` empties neither hold
+/// nor are held. The code book's errors reduce the tolerance. Deterministic; multi-threaded.
 void holdValues(Volume& volume, int sliceAxis, int keyInterval, const Tolerance& tolerance,
                 std::span<const Slot> slotMap);
 
 namespace {
 
-// Says which values stand for which, in terms of slots.
+// Decides which slots may stand for which.
 class HoldRule {
   public:
     HoldRule(const Volume& volume, const Tolerance& tolerance)
         : values_(kSlotCount), allowed_(kSlotCount, -1) {
-        for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-            if (volume.histogram[code] == 0) continue;
-            const double value = volume.codeBook.valueOf(Code(code));
+        for (std::size_t code = 0; code < volume.histogram().size(); ++code) {
+            if (volume.histogram()[code] == 0) continue;
+            const double value = volume.codeBook().valueOf(Code(code));
             values_[code + 1] = value;
-            const double codeError = volume.codeBook.largestErrorOf(Code(code)) * (1 + 1e-9);
-            // What is empty, though active, stays empty, and nothing becomes so.
-            const bool empty = volume.hasBackground && value == volume.background;
+            const double codeError = volume.codeBook().largestErrorOf(Code(code)) * (1 + 1e-9);
+            // Active voxels of the background's value stay so, and no others become so.
+            const bool empty = volume.hasBackground() && value == volume.background();
             if (empty) values_[code + 1] = std::numeric_limits<double>::infinity();
             allowed_[code + 1] = empty ? -1 : allowance(value, tolerance, codeError);
         }
@@ -67,7 +66,7 @@ class HoldRule {
     }
 
   private:
-    // Of the code book's error the true value may be nearer to 0, and the code's farther off.
+    // The true value may be nearer to 0, and the code's farther off, by the code book's error.
     static double allowance(double value, const Tolerance& tolerance, double codeError) {
         double allowed = std::numeric_limits<double>::infinity();
         if (tolerance.value > 0) allowed = tolerance.value;
@@ -82,13 +81,12 @@ class HoldRule {
     std::vector<double> allowed_;
 };
 
-// A block whose codes changed, and its new leaf.
 struct Changed {
     openvdb::Coord origin;
     std::unique_ptr<CodeTree::Leaf> leaf;
 };
 
-// Holds values along one column of blocks (same u and v), in place where there are leaves.
+// Holds values along one column of blocks (same u and v), in place if there are leaves.
 class ColumnHolder {
   public:
     ColumnHolder(const BlockReader& reader, const SlabLayout& layout, const HoldRule& rule,
@@ -107,7 +105,7 @@ class ColumnHolder {
     }
 
   private:
-    // Returns whether any slot was replaced by the one held.
+    // Returns whether the held slot replaced any slot.
     bool hold(BlockSlots& slots, HeldSlots& held) const {
         bool any = false;
         const auto next = [&](Slot before, Slot slot) {
@@ -127,7 +125,7 @@ class ColumnHolder {
         Code* codes = changed.leaf->buffer().data();
         const Slot* slot = slots.data();
         forLeafVoxels(sliceAxis_, [&](const glm::ivec3&, int n) {
-            // What is empty keeps its code.
+            // Empty voxels keep their code.
             if (*slot != kEmptySlot) codes[n] = Code(*slot - 1);
             ++slot;
         });
@@ -145,8 +143,8 @@ class ColumnHolder {
 void holdValues(Volume& volume, int sliceAxis, int keyInterval, const Tolerance& tolerance,
                 std::span<const Slot> slotMap) {
     if (volume.empty() || tolerance.isExact()) return;
-    const SlabLayout layout = layoutOf(permutedBox(volume.box, sliceAxis), keyInterval);
-    const BlockReader reader(*volume.codes, nullptr, sliceAxis, slotMap);
+    const SlabLayout layout = layoutOf(permutedBox(volume.box(), sliceAxis), keyInterval);
+    const BlockReader reader(*volume.codes(), nullptr, sliceAxis, slotMap);
     const HoldRule rule(volume, tolerance);
     const ColumnHolder holder(reader, layout, rule, sliceAxis);
     requireMemory("tolerance", double(reader.blocks().size()) * (sizeof(Changed) + 1200));
@@ -160,21 +158,23 @@ void holdValues(Volume& volume, int sliceAxis, int keyInterval, const Tolerance&
         }
     });
 
-    const auto codes = std::make_shared<CodeTree>(std::in_place, volume.codes->tree());
+    const auto codes = std::make_shared<CodeTree>(std::in_place, volume.codes()->tree());
     openvdb::tree::ValueAccessor<CodeTree::Tree> accessor(codes->tree());
     for (auto& column : changed) {
         for (Changed& block : column) accessor.addLeaf(block.leaf.release());
     }
-    volume.histogram = histogramOf(codes->tree());
-    volume.codes = codes;
-    summarize(volume);
+    VolumeData held = volume.data();
+    held.histogram = histogramOf(codes->tree());
+    held.codes = codes;
+    summarize(held);
+    volume = Volume(std::move(held));
 }
 
 }  // namespace
 
 namespace {
 
-// What no delta speaks of: inactive voxels, or in a volume without any the most frequent code.
+// The state without deltas: inactive, or the most frequent code if all voxels are active.
 struct Rest {
     bool active = false;
     double background = 0;
@@ -183,12 +183,12 @@ struct Rest {
 
 Rest restOf(const Volume& volume) {
     Rest rest;
-    rest.active = !volume.hasBackground;
-    rest.background = volume.background;
+    rest.active = !volume.hasBackground();
+    rest.background = volume.background();
     if (!rest.active || volume.empty()) return rest;
-    const auto most = std::max_element(volume.histogram.begin(), volume.histogram.end());
-    const auto code = Code(most - volume.histogram.begin());
-    rest.background = volume.codeBook.valueOf(code);
+    const auto most = std::max_element(volume.histogram().begin(), volume.histogram().end());
+    const auto code = Code(most - volume.histogram().begin());
+    rest.background = volume.codeBook().valueOf(code);
     rest.slotMap.resize(kSlotCount);
     for (Slot slot = 0; slot < kSlotCount; ++slot) rest.slotMap[std::size_t(slot)] = slot;
     rest.slotMap[code + 1u] = kEmptySlot;
@@ -207,10 +207,10 @@ int mostComparableAxis(const Volume& volume, std::span<const Slot> slotMap) {
     return best;
 }
 
-// The codes of a table, otherwise those up to the largest one in use.
+// Returns the size of a table, or else one more than the largest code in use.
 int codeCountOf(const Volume& volume) {
-    if (volume.codeBook.table) return int(volume.codeBook.table->size());
-    const auto& counts = volume.histogram;
+    if (volume.codeBook().table) return int(volume.codeBook().table->size());
+    const auto& counts = volume.histogram();
     const auto used = [](std::uint64_t count) { return count != 0; };
     const auto last = std::find_if(counts.rbegin(), counts.rend(), used);
     return std::max(1, int(counts.rend() - last));
@@ -223,50 +223,47 @@ IndexBox united(IndexBox box, const InactiveValues& inactive) {
                            {more.max().x(), more.max().y(), more.max().z()}});
 }
 
-// Whether a table, which files have as text, is more than its codes can save, which is no more than
-// what values have beyond 16 bits.
+// Whether a table, stored as text, takes more than codes can save: values' bytes beyond 16 bits.
 bool isTableLarger(const Volume& volume) {
-    if (volume.codeBook.kind != CodeBook::Kind::kTable) return false;
-    const bool isWide = volume.type == "double" || volume.type.ends_with("64");
-    return listText(*volume.codeBook.table).size() > (isWide ? 6 : 2) * volume.activeCount;
+    if (volume.codeBook().kind != CodeBook::Kind::kTable) return false;
+    const bool isWide = volume.type() == "double" || volume.type().ends_with("64");
+    return listText(*volume.codeBook().table).size() > (isWide ? 6 : 2) * volume.activeCount();
 }
 
 template <typename Tree>
 std::shared_ptr<Tree> treeOfCodes(const Volume& volume) {
     using Leaf = typename Tree::LeafNodeType;
-    const CodeTree::Tree& codes = volume.codes->tree();
-    requireMemory("grid \"" + volume.name + "\"", double(codes.leafCount()) * leafBytes<Leaf>());
-    return treeFromCodes<Tree>(codes, volume.codeBook, 0);
+    const CodeTree::Tree& codes = volume.codes()->tree();
+    requireMemory("grid \"" + volume.name() + "\"", double(codes.leafCount()) * leafBytes<Leaf>());
+    return treeFromCodes<Tree>(codes, volume.codeBook(), 0);
 }
 
-// The tree of a volume without empty places, whose codes are exact.
+// Returns the tree of a volume without empty places whose codes are exact.
 std::shared_ptr<openvdb::TreeBase> treeOfExactCodes(const Volume& volume) {
-    if (volume.type == "float32") return treeOfCodes<openvdb::FloatTree>(volume);
-    if (volume.type == "int32") return treeOfCodes<openvdb::Int32Tree>(volume);
-    if (volume.type == "uint32" || volume.type == "int64")
+    if (volume.type() == "float32") return treeOfCodes<openvdb::FloatTree>(volume);
+    if (volume.type() == "int32") return treeOfCodes<openvdb::Int32Tree>(volume);
+    if (volume.type() == "uint32" || volume.type() == "int64")
         return treeOfCodes<openvdb::Int64Tree>(volume);
     return treeOfCodes<openvdb::DoubleTree>(volume);
 }
 
-// What goes into the file by its values' own bits.
 struct StoredValues {
     TreeGrid grid;
     ExactValues type;
 };
 
-// Empty if codes go into the file: values have an exact code book that is worth its bytes, or less
-// is asked for, or there is no other way.
+// Returns nothing if codes are stored: exact and worth their bytes, asked for, or the only way.
 std::optional<StoredValues> valuesToStore(const Volume& volume, const DeltaFileOptions& options) {
     if (options.codesOnly || !options.tolerance.isExact()) return {};
-    // Deltas of codes have lost already what their source had besides.
-    if (isOfCodes(volume) && volume.origin->maxError > 0) return {};
-    const bool isExact = volume.codeBook.isExact();
+    // A lossy delta grid has already lost its source's values.
+    if (isOfCodes(volume) && volume.origin()->maxError > 0) return {};
+    const bool isExact = volume.codeBook().isExact();
     if (isExact && !isTableLarger(volume)) return {};
-    if (!volume.hasBackground && volume.box.min != glm::ivec3(0)) return {};
+    if (!volume.hasBackground() && volume.box().min != glm::ivec3(0)) return {};
     TreeGrid grid;
-    if (volume.source) {
-        grid = volume.source->grid;
-    } else if (isExact && !volume.hasBackground) {
+    if (volume.source()) {
+        grid = volume.source()->grid;
+    } else if (isExact && !volume.hasBackground()) {
         grid.tree = treeOfExactCodes(volume);
     }
     if (!grid.tree) return {};
@@ -275,13 +272,13 @@ std::optional<StoredValues> valuesToStore(const Volume& volume, const DeltaFileO
     return StoredValues{grid, *type};
 }
 
-// Deltas go into files as numbers without sign.
+// Files store deltas as zigzag numbers.
 void removeSigns(openvdb::Int32Tree& deltas) {
     std::vector<DeltaTree::Leaf*> leaves;
     deltas.getNodes(leaves);
     parallelForChunks(leaves.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            // Inactive ones as well, which are 0 and stay so: without looking at masks.
+            // Inactive deltas are 0 and stay 0, so masks need no look.
             std::int32_t* const values = leaves[i]->buffer().data();
             std::transform(values, values + DeltaTree::Leaf::SIZE, values,
                            [](std::int32_t delta) { return toZigzag(delta); });
@@ -292,28 +289,27 @@ void removeSigns(openvdb::Int32Tree& deltas) {
 DeltaHeader headerOf(const Volume& volume, const Rest& rest, const InactiveValues& inactive,
                      const Tolerance& tolerance) {
     DeltaHeader header;
-    header.book = volume.codeBook;
-    header.sourceType = volume.type;
-    header.space = volume.space;
+    header.book = volume.codeBook();
+    header.sourceType = volume.type();
+    header.space = volume.space();
     header.background = rest.background;
     header.restActive = rest.active;
     header.inactiveValues = inactive.values;
-    header.active = volume.activeCount;
-    // A source that was a delta grid itself has an error of its own.
-    const DeltaOrigin before = volume.origin.value_or(DeltaOrigin());
-    // (1 + t) (1 + b) - 1, exact where there was none before.
+    header.active = volume.activeCount();
+    // A source that was a delta grid has an error of its own.
+    const DeltaOrigin before = volume.origin().value_or(DeltaOrigin());
+    // (1 + t) (1 + b) - 1, exact if there was no error before.
     const double t = tolerance.relative;
     header.tolerance = t + before.tolerance + t * before.tolerance;
     header.toleranceValue = tolerance.value + before.toleranceValue;
-    header.maxError = std::max(before.maxError, volume.readError);
+    header.maxError = std::max(before.maxError, volume.readError());
     return header;
 }
 
-// Lets whole numbers begin with the smallest in use: rest is 0, and what comes from it or goes to
-// it is a change by all that a slot is.
+// Lets whole numbers begin with the smallest in use: a change from or to empty costs a whole slot.
 std::vector<Slot> beginLow(const Volume& volume, const Rest& rest, DeltaHeader& header) {
     if (header.book.kind != CodeBook::Kind::kInteger || volume.empty()) return rest.slotMap;
-    const auto& counts = volume.histogram;
+    const auto& counts = volume.histogram();
     const auto used = [](std::uint64_t count) { return count != 0; };
     const auto first = Slot(std::find_if(counts.begin(), counts.end(), used) - counts.begin());
     const double offset = header.book.valueOf(Code(first));
@@ -331,8 +327,9 @@ std::vector<Slot> beginLow(const Volume& volume, const Rest& rest, DeltaHeader& 
 std::shared_ptr<openvdb::TreeBase> takeCodes(const Volume& volume, const Rest& rest,
                                              const InactiveValues& inactive,
                                              const Tolerance& tolerance, DeltaHeader& header) {
-    Volume held = volume;
-    held.box = header.box;
+    VolumeData boxed = volume.data();
+    boxed.box = header.box;
+    Volume held(std::move(boxed));
     holdValues(held, header.sliceAxis, header.keyInterval, tolerance, rest.slotMap);
     header.codeCount = codeCountOf(held);
     const std::vector<Slot> slotMap = beginLow(held, rest, header);
@@ -353,13 +350,13 @@ std::shared_ptr<openvdb::TreeBase> takeValues(const Volume& volume, const Stored
     std::optional<double> rest;
     if (header.restActive) {
         rest = 0;
-        if (volume.mostFrequent && hasSlot(values.type, volume.mostFrequent->value))
-            rest = volume.mostFrequent->value;
+        if (volume.mostFrequent() && hasSlot(values.type, volume.mostFrequent()->value))
+            rest = volume.mostFrequent()->value;
         header.background = *rest;
     }
     ExactDeltas taken = takeExactDeltas(
         values.grid, {header.sliceAxis, header.keyInterval, header.box, rest, inactive},
-        "grid \"" + volume.name + "\"");
+        "grid \"" + volume.name() + "\"");
     header.slabDeltas = std::move(taken.slabDeltas);
     return taken.deltas;
 }
@@ -370,17 +367,17 @@ TakenDeltas takeDeltas(const Volume& volume, const DeltaFileOptions& options,
                        const Listener& listener) {
     TakenDeltas taken;
     DeltaHeader& header = taken.header;
-    const TreeGrid* const source = volume.source ? &volume.source->grid : nullptr;
-    if (source && volume.hasBackground) taken.inactive = findInactiveValues(*source);
+    const TreeGrid* const source = volume.source() ? &volume.source()->grid : nullptr;
+    if (source && volume.hasBackground()) taken.inactive = findInactiveValues(*source);
     const InactiveValues& inactive = taken.inactive;
     Rest rest = restOf(volume);
-    // A background that is no number has been replaced in `volume`, but not in its own grid.
-    if (volume.hasBackground && source) rest.background = backgroundOf(*source);
+    // A non-finite background was replaced in `volume`, but not in its own grid.
+    if (volume.hasBackground() && source) rest.background = backgroundOf(*source);
     listener.report(0.2);
 
     header = headerOf(volume, rest, inactive, options.tolerance);
     if (options.pack) header.version = DeltaHeader::kPackedVersion;
-    header.box = united(volume.box, inactive);
+    header.box = united(volume.box(), inactive);
     header.sliceAxis =
         options.sliceAxis ? *options.sliceAxis : mostComparableAxis(volume, rest.slotMap);
     header.keyInterval = options.keyInterval != 0

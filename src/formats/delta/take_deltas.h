@@ -13,15 +13,14 @@
 
 namespace deltasplat {
 
-/// What becomes a delta grid.
+/// Parts of a future delta grid.
 struct TakenDeltas {
-    std::shared_ptr<openvdb::TreeBase>
-        deltas;          ///< without sign, as voxels: if asked for, still to be packed
-    DeltaHeader header;  ///< but for what a .vdb source says of itself
+    std::shared_ptr<openvdb::TreeBase> deltas;  ///< zigzag deltas as voxels, not yet packed
+    DeltaHeader header;                         ///< without the facts of a .vdb source
     InactiveValues inactive;
 };
 
-/// Takes the differences of a volume, of codes or of its values' own bits as DeltaFile::add does.
+/// Takes the deltas of a volume for DeltaFile::add: of codes or of its values' own bits.
 /// Multi-threaded; deterministic.
 TakenDeltas takeDeltas(const Volume& volume, const DeltaFileOptions& options,
                        const Listener& listener = {});

@@ -20,7 +20,6 @@ using Tree = openvdb::Int64Tree;
 using Leaf = Tree::LeafNodeType;
 constexpr std::size_t kLeafWords = Leaf::NUM_VALUES;
 
-// Whether the first `count` voxels of a leaf are active, and no others.
 bool holdsFirst(const VdbLeaves::Mask& mask, std::size_t count) {
     for (std::size_t i = 0; i < mask.size(); ++i) {
         const std::size_t bits = count < 64 * i ? 0 : std::min<std::size_t>(64, count - 64 * i);
@@ -35,13 +34,13 @@ bool holdsFirst(const Leaf& leaf, std::size_t count) {
     return holdsFirst(mask, count);
 }
 
-// Takes the words of leaves from a file.
+// Takes the words of a file's leaves.
 class LeafWords {
   public:
-    // @param end  one behind the last leaf that is going to be asked for
+    // @param end  index behind the last leaf that will be asked for
     LeafWords(const VdbLeaves& leaves, std::size_t end) : leaves_(leaves) { room_.end = end; }
 
-    // Returns those of a leaf, until the next; nothing if it has gaps, or is another's place.
+    // Returns a leaf's words until the next call; nothing for gaps or a wrong origin.
     std::optional<std::span<const std::int64_t>> of(std::size_t i) {
         const VdbLeaf& leaf = leaves_.leaves()[i];
         if (openvdb::Coord(leaf.origin.data()) != wordLeafOrigin(i)) return std::nullopt;
@@ -59,7 +58,7 @@ class LeafWords {
 }  // namespace
 
 openvdb::Coord wordLeafOrigin(std::size_t leaf) {
-    const std::size_t node = leaf >> 12;  // of 16^3 leaves, of which 32^3 make a node themselves
+    const std::size_t node = leaf >> 12;  // a node has 16^3 leaves; 32^3 nodes make a node in turn
     return {int(8 * (leaf >> 8 & 15) + 128 * (node >> 10)),
             int(8 * (leaf >> 4 & 15) + 128 * (node >> 5 & 31)),
             int(8 * (leaf & 15) + 128 * (node & 31))};
@@ -81,7 +80,7 @@ Tree::Ptr treeOfWords(const std::vector<std::uint64_t>& words) {
 std::vector<std::uint64_t> wordsOfTree(const Tree& tree, std::size_t padding,
                                        const std::string& where) {
     const auto count = std::size_t(tree.activeVoxelCount());
-    // Words of tiles are no more than a number in the file.
+    // Words of tiles are only a claim of the file.
     const auto require = tree.hasActiveTiles() ? requireClaimedMemory : requireMemory;
     require(where, double(count) * sizeof(std::uint64_t));
     std::vector<std::uint64_t> words(count + padding);
@@ -93,7 +92,7 @@ std::vector<std::uint64_t> wordsOfTree(const Tree& tree, std::size_t padding,
         if (leaf && holdsFirst(*leaf, size)) {
             std::memcpy(&words[begin], leaf->buffer().data(), size * sizeof words[0]);
         } else if (!leaf && size == kLeafWords && accessor.isValueOn(origin)) {
-            // Another program has made a tile of equal words.
+            // Other programs make tiles of equal words.
             std::fill_n(&words[begin], size, std::uint64_t(accessor.getValue(origin)));
         } else {
             throw Error(ErrorCode::kInput, where,

@@ -13,24 +13,22 @@
 
 namespace deltasplat {
 
-/// Returns the place in a tree of words of the leaf that has the words from 512 * `leaf` on: nodes
-/// are filled one behind the other, in OpenVDB's own order.
+/// Returns the origin of the leaf of words from 512 * `leaf` on: nodes fill up in OpenVDB's order.
 openvdb::Coord wordLeafOrigin(std::size_t leaf);
 
-/// Returns a tree whose active voxels are words, one behind the other.
+/// Returns a tree whose active voxels are consecutive words.
 openvdb::Int64Tree::Ptr treeOfWords(const std::vector<std::uint64_t>& words);
 
-/// Returns the words of such a tree, with `padding` zeros behind them.
-/// @throw Error(kInput) if there is a gap between them; Error(kFailed) if memory does not hold them
+/// Returns the words of such a tree, followed by `padding` zeros.
+/// @throw Error(kInput) for a gap between words; Error(kFailed) if memory is too small
 std::vector<std::uint64_t> wordsOfTree(const openvdb::Int64Tree& tree, std::size_t padding,
                                        const std::string& where);
 
-/// Returns how many words a file's leaves of int64 have; nothing if these are no tree of words.
+/// Returns the number of words in a file's leaves of int64; nothing if these are no tree of words.
 std::optional<std::size_t> countWords(const VdbLeaves& leaves);
-/// Returns the first `count` words of such leaves, with `padding` zeros behind them.
-/// Multi-threaded.
-/// @return nothing if there is a gap between them
-/// @throw Error(kFailed) if memory does not hold them
+/// Returns the first `count` words of such leaves, followed by `padding` zeros. Multi-threaded.
+/// @return nothing for a gap between words
+/// @throw Error(kFailed) if memory is too small
 std::optional<UnclearedVector<std::uint64_t>> wordsOfLeaves(const VdbLeaves& leaves,
                                                             std::size_t count, std::size_t padding,
                                                             const std::string& where);

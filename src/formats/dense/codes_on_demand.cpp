@@ -27,7 +27,7 @@ namespace {
 constexpr int kBlock = CodeTree::Leaf::DIM;
 constexpr std::size_t kBlockVoxels = CodeTree::Leaf::SIZE;
 
-// The bytes of a row of blocks, those with the same y and z: few enough to stay in the cache.
+// The bytes of blocks with the same y and z: few enough to stay in the cache.
 class BlockRow {
   public:
     BlockRow(const DenseSource& source, int y, int z)
@@ -58,7 +58,6 @@ class BlockRow {
     std::unique_ptr<std::byte[]> bytes_;
 };
 
-// Makes codes of what is stored.
 class BlockCoder {
   public:
     BlockCoder(const DenseSource& source, const CodeBook& book)
@@ -110,7 +109,7 @@ class DenseLeaves : public LeafReader {
     }
 
   private:
-    // Leaves with the same row of blocks are read together.
+    // Leaves in the same row of blocks are read together.
     static std::pair<int, int> rowOf(const CodeTree::Leaf& leaf) {
         return {leaf.origin().z(), leaf.origin().y()};
     }
@@ -125,7 +124,7 @@ class DenseLeaves : public LeafReader {
     BlockCoder coder_;
 };
 
-// Finds the range of codes in blocks, and counts them.
+// Finds the code ranges of blocks, and counts the codes.
 class BlockLooker {
   public:
     BlockLooker(const DenseSource& source, const CodeBook& book, std::size_t workers)
@@ -133,7 +132,7 @@ class BlockLooker {
           isPlain_(rawTypeBytes(source.type) == 1 || !mustSwap(source.bigEndian)),
           counts_(workers) {}
 
-    /// One call at a time for each worker.
+    /// Not concurrently for the same worker.
     std::pair<Code, Code> lookAt(std::size_t worker, const RawBlock& block) {
         const bool isWhole = block.size == glm::ivec3(kBlock);
         return isWhole && isPlain_ ? lookAtPlain(worker, block) : lookAtAny(worker, block);
@@ -148,11 +147,11 @@ class BlockLooker {
                                               : lookAtAll<std::uint16_t>(worker, block);
     }
 
-    // @param T  holds codes
+    // @param T  integer type of the codes
     template <typename T>
     std::pair<Code, Code> lookAtAll(std::size_t worker, const RawBlock& block) {
         std::array<T, kBlockVoxels> codes;
-        // Codes begin with the least number that the type has: 0, or one of its first bit alone.
+        // Codes begin with the type's least number: 0, or the sign bit alone.
         const auto first = std::uint64_t(T(std::int64_t(coder_.coding().book.offset)));
         constexpr std::uint64_t kEach = ~std::uint64_t{0} / std::numeric_limits<T>::max();
         T* next = codes.data();
@@ -186,7 +185,7 @@ class BlockLooker {
     CodeCounts counts_;
 };
 
-// A row of blocks that one worker looks at.
+// A row of blocks as addRanges() needs it.
 struct SeenRow {
     std::size_t worker;
     BlockLooker& looker;

@@ -11,18 +11,17 @@
 
 namespace deltasplat {
 
-/// The codes of a dense volume whose leaves are read from its file when they are asked for, and how
-/// many voxels have each code.
+/// The codes of a dense volume whose leaves are read from the file on demand, and their counts.
 struct CodesOnDemand {
     std::shared_ptr<CodeTree> tree;
     std::vector<std::uint64_t> histogram;  // [65536]
 };
 
-/// Goes over a dense volume once for the ranges of codes in its blocks, and for what is uniform.
-/// @param source  one with rows, of whole numbers of at most 16 bits
-/// @param book    of its codes; it counts whole numbers from the least that the type has
-/// @param wanted  which codes' leaves are read at once; null: none
-/// @throw Error(kInput) if the file is written to meanwhile
+/// Scans a dense volume once for uniform blocks and the code ranges of the others.
+/// @param source  has rows of whole numbers of at most 16 bits
+/// @param book    of whole numbers, from the type's least on
+/// @param wanted  codes whose leaves are read at once; null: none
+/// @throw Error(kInput) if the file changes meanwhile
 CodesOnDemand codesOnDemand(const DenseSource& source, const CodeBook& book,
                             const SeenCodes* wanted, const Listener& listener);
 

@@ -44,7 +44,7 @@ bool DenseLayout::isOrthogonal() const {
 void DenseLayout::turnTo(const std::string& otherSpace) {
     if (space.empty() || space == otherSpace) return;
     for (int column = 0; column < 4; ++column) {
-        // Adding 0 keeps -0, which is no other place, out of the files.
+        // Adding 0 turns -0, which is the same place, into 0.
         worldFromIndex[column].x = -worldFromIndex[column].x + 0.0;
         worldFromIndex[column].y = -worldFromIndex[column].y + 0.0;
     }
@@ -77,10 +77,10 @@ std::optional<RawType> typeNamed(const std::string& name) {
 }
 
 std::string sourceType(const Volume& volume) {
-    return volume.source ? volume.source->grid.metadata.text(kSourceTypeKey) : "";
+    return volume.source() ? volume.source()->grid.metadata.text(kSourceTypeKey) : "";
 }
 
-// Returns what OpenVDB's own types are called here.
+// Returns the name that dense formats give to one of OpenVDB's types.
 std::string denseName(const std::string& type) {
     if (type == "float" || type == "half") return "float32";
     if (type == "double") return "float64";
@@ -88,12 +88,12 @@ std::string denseName(const std::string& type) {
 }
 
 RawType chooseType(const Volume& volume, const ValueFacts& facts, bool wide) {
-    for (const std::string& name : {sourceType(volume), denseName(volume.type)}) {
+    for (const std::string& name : {sourceType(volume), denseName(volume.type())}) {
         const std::optional<RawType> type = typeNamed(name);
         const bool known = wide || (type != RawType::kInt64 && type != RawType::kUint64);
         if (type && known && facts.fit(*type)) return *type;
     }
-    if (volume.type == "int64" && facts.fit(RawType::kInt32)) return RawType::kInt32;
+    if (volume.type() == "int64" && facts.fit(RawType::kInt32)) return RawType::kInt32;
     return facts.fit(RawType::kFloat32) ? RawType::kFloat32 : RawType::kFloat64;
 }
 
@@ -102,11 +102,11 @@ RawType chooseType(const Volume& volume, const ValueFacts& facts, bool wide) {
 RawType denseType(const Volume& volume, const ValueFacts& facts, bool wide, WriteNotes& notes) {
     const RawType type = chooseType(volume, facts, wide);
     const std::string name = rawTypeName(type);
-    const std::string before = sourceType(volume).empty() ? volume.type : sourceType(volume);
+    const std::string before = sourceType(volume).empty() ? volume.type() : sourceType(volume);
     if (!facts.fit(type)) {
         notes.loss(before + " stored as " + name + ", which is off by up to " +
                    numberText(facts.doubleError));
-    } else if (name != before && volume.readError == 0 &&
+    } else if (name != before && volume.readError() == 0 &&
                !(before == "float" && name == "float32") &&
                !(before == "double" && name == "float64")) {
         notes.remark(before + " stored as " + name + ", which holds every value");
@@ -118,16 +118,15 @@ namespace {
 
 template <typename T>
 bool within(const ValueFacts& facts) {
-    // What is whole is at most the largest if it is below the power of two that follows.
+    // A whole number below the next power of two is at most the largest.
     return facts.whole && facts.doubleError == 0 &&
            facts.min >= double(std::numeric_limits<T>::min()) &&
            facts.max < std::ldexp(1.0, std::numeric_limits<T>::digits);
 }
 
-// How the values of a tree are added.
 struct Adding {
-    bool inactiveOnly = false;  // without active voxels of leaves
-    bool isUnsigned = false;    // int64 has the bits of uint64
+    bool inactiveOnly = false;  // skips active voxels of leaves
+    bool isUnsigned = false;    // int64 values are bits of uint64
 
     template <typename T>
     void add(T value, ValueFacts& facts) const {
@@ -165,10 +164,10 @@ ValueFacts factsOfTree(const Tree& tree, const Adding& adding) {
 
 ValueFacts factsOfCodes(const Volume& volume) {
     ValueFacts facts;
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-        if (volume.histogram[code] != 0) facts.add(volume.codeBook.valueOf(Code(code)));
+    for (std::size_t code = 0; code < volume.histogram().size(); ++code) {
+        if (volume.histogram()[code] != 0) facts.add(volume.codeBook().valueOf(Code(code)));
     }
-    if (volume.hasBackground) facts.add(volume.background);
+    if (volume.hasBackground()) facts.add(volume.background());
     return facts;
 }
 
@@ -197,12 +196,12 @@ bool ValueFacts::fit(RawType type) const {
 }
 
 ValueFacts factsOf(const Volume& volume) {
-    if (!volume.source) return factsOfCodes(volume);
-    // Which exact codes there are has been counted.
-    const bool isExact = volume.codeBook.isExact();
+    if (!volume.source()) return factsOfCodes(volume);
+    // The histogram knows exact codes.
+    const bool isExact = volume.codeBook().isExact();
     ValueFacts facts = isExact ? factsOfCodes(volume) : ValueFacts();
     const Adding adding{isExact, holdsUnsigned(volume)};
-    volume.source->grid.apply<ScalarTrees>(
+    volume.source()->grid.apply<ScalarTrees>(
         [&](const auto& tree) { facts.append(factsOfTree(tree, adding)); });
     return facts;
 }

@@ -21,7 +21,7 @@
 
 namespace deltasplat {
 
-/// What the finite values of a volume have in common: which types hold all of them.
+/// Facts about a volume's finite values, which tell the types that hold all of them.
 struct ValueFacts {
     double min = 0;
     double max = 0;
@@ -30,7 +30,7 @@ struct ValueFacts {
     bool floats = true;        ///< a float holds every value
     bool ints = true;          ///< an int64 holds every value
     bool unsignedInts = true;  ///< an uint64 holds every value
-    double doubleError = 0;    ///< largest difference between a value and its nearest double
+    double doubleError = 0;    ///< largest distance of a value from its nearest double
 
     template <typename T>
     void add(T value) {
@@ -55,13 +55,12 @@ struct ValueFacts {
         }
     }
     void append(const ValueFacts& other);
-    /// Whether `type` holds every value.
     bool fit(RawType type) const;
 
   private:
     template <typename T>
     static double errorOfDouble(T value, double number) {
-        // From 2^53 on doubles are whole numbers; the largest may round to 2^64, which is 0 then.
+        // Doubles from 2^53 on are whole; the largest value may round to 2^64, which becomes 0.
         const std::uint64_t whole = number < 0        ? -std::uint64_t(-number)
                                     : number < 0x1p64 ? std::uint64_t(number)
                                                       : 0;
@@ -70,18 +69,16 @@ struct ValueFacts {
     }
 };
 
-/// Returns the facts of all values of a volume, those of its inactive voxels included. The result
-/// does not depend on the number of threads.
+/// Returns the facts of all values, inactive ones included; the same for any number of threads.
 ValueFacts factsOf(const Volume& volume);
 
-/// Collects the notes of a WriteReport.
 class WriteNotes {
   public:
     WriteNotes(WriteReport& report, const std::filesystem::path& file)
         : report_(report), file_(file.string()) {}
-    /// A detail that is there, but otherwise.
+    /// Notes a detail that is stored differently.
     void remark(const std::string& what) { report_.notes.push_back(file_ + ": " + what); }
-    /// A detail that cannot be read back.
+    /// Notes a detail that cannot be read back.
     void loss(const std::string& what) {
         remark(what);
         report_.lossless = false;
@@ -92,50 +89,48 @@ class WriteNotes {
     std::string file_;
 };
 
-/// What a file of a dense format holds besides its values.
+/// Contents of a dense file besides its values.
 struct DenseLayout {
     glm::ivec3 dims{1};  ///< voxels along x, y, z
     RawType type = RawType::kUint8;
-    bool bigEndian = false;                   ///< of values of several bytes
+    bool bigEndian = false;                   ///< byte order of the values
     glm::dmat4 worldFromIndex{1.0};           ///< maps the first voxel, (0, 0, 0), to its place
     std::string space;                        ///< as Volume::space
     std::string lengthUnit;                   ///< as Volume::lengthUnit
     std::shared_ptr<const LabelList> labels;  ///< as Volume::labels
 
     glm::dvec3 origin() const { return worldFromIndex[3]; }
-    /// World lengths of one step along each axis.
+    /// Returns the world length of one step along each axis.
     glm::dvec3 spacing() const;
-    /// Unit vectors along x, y and z, as columns.
+    /// Returns unit vectors along x, y and z, as columns.
     glm::dmat3 directions() const;
-    /// Whether the axes are at right angles, to a hundredth of a voxel in a thousand.
+    /// Whether the axes are at right angles, within 0.01 voxels per 1000.
     bool isOrthogonal() const;
-    /// Turns world space from the patient's RAS to LPS or back; what has no space keeps its
-    /// numbers.
+    /// Turns world space from the patient's RAS to LPS or back; without a space nothing changes.
     void turnTo(const std::string& otherSpace);
-    /// Says that names and colours of labels are lost, if there are any, or with `all` that values
-    /// are labels.
+    /// Notes the loss of labels' names and colours, if any, and with `all` that values are labels.
     void noteLabels(const std::string& format, bool all, WriteNotes& notes) const;
-    /// Turns known lengths into millimetres, which is what other programs take lengths for.
+    /// Converts known lengths to millimetres, the unit that other programs assume.
     void turnToMillimetres();
 };
 
 /// How files of one extension are written.
 struct DenseFormat {
     const char* extension;      ///< ".nii.gz"
-    const char* dataExtension;  ///< of the file that holds the values; "" if it is the same
+    const char* dataExtension;  ///< of a separate file for the values, or ""
     bool gzipHeader;
     bool gzipData;
-    bool wideIntegers;  ///< it has integers of 64 bits
-    /// Brings a layout into the format's terms, and says what the format does not hold.
-    /// @throw Error(kFailed) if the format cannot hold it
+    bool wideIntegers;  ///< has integers of 64 bits
+    /// Adapts a layout to the format and notes all that the format does not hold.
+    /// @throw Error(kFailed) if the format cannot hold the layout
     void (*settle)(DenseLayout& layout, const std::string& file, WriteNotes& notes);
-    /// Returns the bytes before the values. `dataFile` is the name of the other file.
+    /// Returns the bytes before the values. `dataFile` is the name of the values' file.
     std::string (*header)(const DenseLayout& layout, const std::string& dataFile);
 };
 
-/// Returns the type in which a dense format stores a volume: the type that it had before it was a
-/// .vdb (kSourceTypeKey) or its own if that holds every value, otherwise float32 or, if that does
-/// not hold every value, float64. Says so where the type is another one.
+/// Returns the type in which a dense format stores a volume: the type before it was a .vdb
+/// (kSourceTypeKey), else its own, if that holds every value. Otherwise int32 for int64, float32 or
+/// float64, the first that holds every value. Notes a change of type.
 /// @param wide  whether the format has integers of 64 bits
 RawType denseType(const Volume& volume, const ValueFacts& facts, bool wide, WriteNotes& notes);
 

@@ -23,9 +23,8 @@
 
 namespace deltasplat {
 
-/// Builds the OpenVDB tree of a dense volume, some layers of 8 slices at a time. Every voxel of the
-/// volume is active; a whole block of one value becomes a tile. Deterministic whatever the thread
-/// count.
+/// Builds the OpenVDB tree of a dense volume from layers of 8 slices. All voxels are active; whole
+/// uniform blocks become tiles. Deterministic for any number of threads.
 template <typename Tree>
 class DenseTreeBuilder {
   public:
@@ -44,15 +43,13 @@ class DenseTreeBuilder {
           made_(std::size_t(blocks_.x) * std::size_t(blocks_.y) *
                 std::size_t(std::min(blocks_.z, kNode))) {}
 
-    /// How many parts of the work go on at the same time.
     std::size_t workers() const { return workers_; }
 
-    /// Adds slices from firstSlice on, behind those that were added before.
+    /// Adds slices from firstSlice on, behind all slices added before.
     /// @param slices  a multiple of 8, or all that are left
-    /// @param fill    fill(corner, size, values) writes the values of the block at voxel corner
-    ///                (x, y, z), counted from firstSlice, into values[512], in leaf order; called
-    ///                from all threads
-    /// @param tally   tally(worker, size, values) hears of every block after it is filled
+    /// @param fill    fill(corner, size, values) writes the block at a voxel, counted from
+    ///                firstSlice, into values[512] in leaf order; called from all threads
+    /// @param tally   tally(worker, size, values) hears of each filled block
     template <typename Fill, typename Tally>
     void add(int firstSlice, int slices, const Fill& fill, const Tally& tally) {
         addBlocks(firstSlice, slices,
@@ -65,11 +62,11 @@ class DenseTreeBuilder {
                   });
     }
 
-    /// Adds slices as add() does, but leaves most leaves without values, to be read later: all but
-    /// those that are wanted, and those of rows in which there are few.
-    /// @param rowOf  rowOf(worker, y, z), by the first voxel of a row of blocks, returns what has
-    ///               rangeOf(x), the smallest and the largest value of the block from x on,
-    ///               isWanted(low, high), and read(leaf), which reads one; called from all threads
+    /// Adds slices as add() does, but leaves most leaves to be read later: all but wanted ones and
+    /// those of rows with few leaves.
+    /// @param rowOf  rowOf(worker, y, z) returns an object for the row of blocks that starts at
+    ///               this voxel: rangeOf(x) is the smallest and largest value of the block at x;
+    ///               isWanted(low, high); read(leaf) fills a leaf. Called from all threads.
     template <typename RowOf>
     void addRanges(int firstSlice, int slices, const RowOf& rowOf) {
         addBlocks(firstSlice, slices,
@@ -78,7 +75,7 @@ class DenseTreeBuilder {
                   });
     }
 
-    /// Returns the leaves with the ranges of their codes, once all slices are there.
+    /// Returns the leaves with their code ranges, after the last slice.
     std::vector<CodeLeaf> takeLeaves() {
         std::size_t count = 0;
         for (const std::vector<CodeLeaf>& ofNode : leaves_) count += ofNode.size();
@@ -90,14 +87,13 @@ class DenseTreeBuilder {
         return leaves;
     }
 
-    /// Returns the most bytes that slices can add to the tree.
     double worstBytes(int slices) const {
         constexpr std::size_t kBlockBytes =
             sizeof(Leaf) + kBlockVoxels * sizeof(Value) + (kHasCodes ? sizeof(CodeLeaf) : 0);
         const int layers = (slices + kBlock - 1) / kBlock;
         return double(blocks_.x) * blocks_.y * layers * kBlockBytes;
     }
-    /// Returns what the builder for a volume takes itself.
+    /// Returns the memory of the builder itself.
     static double bytes(const glm::ivec3& dims) {
         const glm::ivec3 blocks = (dims + (kBlock - 1)) / kBlock;
         return double(blocks.x) * blocks.y * std::min(blocks.z, kNode) * sizeof(Block);
@@ -106,21 +102,20 @@ class DenseTreeBuilder {
   private:
     using Lower = typename Tree::RootNodeType::ChildNodeType::ChildNodeType;
     static constexpr bool kHasCodes = std::is_same_v<Tree, CodeTree::Tree>;
-    static constexpr int kNode = Lower::DIM / kBlock;  // blocks of a node along an axis
+    static constexpr int kNode = Lower::DIM / kBlock;  // blocks per node along an axis
 
     struct Block {
         std::unique_ptr<Leaf> leaf;  // empty: a tile of `low`
-        Value low{};                 // and `high`: the range of a leaf's codes
+        Value low{};                 // range of a leaf's codes
         Value high{};
     };
 
-    // @param makeRow  makeRow(worker, corner, row) makes the blocks of a row along x
     template <typename MakeRow>
     void addBlocks(int firstSlice, int slices, const MakeRow& makeRow) {
         const int firstLayer = firstSlice / kBlock;
         const int layers = (slices + kBlock - 1) / kBlock;
         for (int layer = firstLayer, count = 0; layer < firstLayer + layers; layer += count) {
-            // Those that hang in one row of nodes.
+            // Layers that share one row of nodes.
             count = std::min(firstLayer + layers, (layer / kNode + 1) * kNode) - layer;
             makeBlocks(layer, count, makeRow);
             if ((layer + count) % kNode == 0 || layer + count == blocks_.z)
@@ -134,12 +129,12 @@ class DenseTreeBuilder {
     static bool isWhole(const glm::ivec3& size) { return size == glm::ivec3(kBlock); }
 
     static bool isUniform(const Value* values) {
-        // All neighbours equal: a comparison that libraries do with whole vectors.
+        // All neighbours are equal: libraries vectorise this comparison.
         const auto* bytes = reinterpret_cast<const std::byte*>(values);
         return std::memcmp(bytes, bytes + sizeof(Value), (kBlockVoxels - 1) * sizeof(Value)) == 0;
     }
 
-    // Returns a leaf without room for values, active where the volume is.
+    // Returns a leaf without values, active within the volume.
     static std::unique_ptr<Leaf> leafAt(const glm::ivec3& corner, const glm::ivec3& size) {
         expectPieces(sizeof(Leaf));
         auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(),
@@ -184,7 +179,7 @@ class DenseTreeBuilder {
             }
             corner.x += kBlock;
         }
-        // To read a row once more takes as long as to make leaves of an eighth of it.
+        // Reading a row again takes as long as making leaves of an eighth of it.
         if (8 * leaves > blocks.size()) return;
         for (const Block& block : blocks)
             if (block.leaf && block.leaf->buffer().empty()) row.read(*block.leaf);
@@ -220,7 +215,7 @@ class DenseTreeBuilder {
                      std::size_t(x)];
     }
 
-    // Hangs the blocks of a row of nodes into the tree.
+    // Adds a row of nodes with its blocks to the tree.
     void hangInRow(int nodeZ) {
         const glm::ivec2 nodes = (glm::ivec2(blocks_) + (kNode - 1)) / kNode;
         std::vector<std::unique_ptr<Lower>> made(std::size_t(nodes.x) * std::size_t(nodes.y));
@@ -264,7 +259,7 @@ class DenseTreeBuilder {
     std::size_t workers_;
     Tree& tree_;
     std::vector<Block> made_;                    // [z % kNode][y][x]
-    std::vector<std::vector<CodeLeaf>> leaves_;  // of each node: kept apart, not to be moved twice
+    std::vector<std::vector<CodeLeaf>> leaves_;  // per node, so that none moves twice
 };
 
 }  // namespace deltasplat

@@ -36,11 +36,9 @@ namespace deltasplat {
 
 namespace {
 
-/// Reads a dense volume once to count the 8x8x8 blocks that are not uniform: what it takes in
-/// memory depends on little else.
+/// Reads a dense volume once and counts its mixed 8x8x8 blocks, which determine its memory.
 std::uint64_t countMixedBlocks(const DenseSource& source, const Listener& listener);
 
-// The slices of a layer that are in memory.
 struct Layer {
     const DenseSource& source;
     const std::byte* bytes;
@@ -58,7 +56,7 @@ struct Layer {
         if (width < 8 || height < 8 || slices < 8) return true;
         const std::byte* first = at(x, y, 0);
         const std::size_t row = 8 * valueBytes();
-        // The first row is uniform if it equals itself one value on.
+        // The first row is uniform if it equals itself shifted by one value.
         if (std::memcmp(first, first + valueBytes(), row - valueBytes()) != 0) return true;
         for (int z = 0; z < 8; ++z) {
             for (int v = 0; v < 8; ++v) {
@@ -85,7 +83,7 @@ std::uint64_t countMixedBlocks(const DenseSource& source, const Listener& listen
     return mixed;
 }
 
-// Half of the progress for each of two readings, all of it for the only one.
+// Returns a share of the progress: half for each of two readings, all of it for a single one.
 Listener partOf(const Listener& listener, double begin, double end) {
     Listener part;
     part.progress = [&listener, begin, end](double share) {
@@ -136,7 +134,7 @@ void settleNonFinite(const DenseSource& source, RawScan& scan, std::optional<dou
     scan.frequent.append(replaced);
 }
 
-// Values that, for all that is known, a twentieth of the voxels have.
+// Returns the values that may belong to a twentieth of the voxels or more.
 std::vector<FrequentValue> frequentOf(const RawScan& scan) {
     std::vector<FrequentValue> frequent = scan.frequent.values();
     const double voxels = double(scan.census.count);
@@ -145,7 +143,7 @@ std::vector<FrequentValue> frequentOf(const RawScan& scan) {
     return frequent;
 }
 
-// Types that do not fit 16 bits are read twice: first for what their codes have to tell apart.
+// Types beyond 16 bits are read twice, first to choose their codes.
 bool needsScan(RawType type) {
     return rawTypeBytes(type) > 2;
 }
@@ -156,22 +154,22 @@ CodeBook fixedBook(RawType type) {
     return CodeBook::integer(0);
 }
 
-// What is known of a source's values before they become codes.
+// Facts about a source's values, found before encoding.
 struct Survey {
     double bulkMagnitude = 0;      // as for ErrorMeter
     double low = 0, high = 0;      // of the values
     bool ints = true;              // as ValueCensus::ints
-    std::vector<double> frequent;  // which may be the most frequent one
+    std::vector<double> frequent;  // candidates for the most frequent value
 };
 
-// Whether whole numbers that are doubles now are sure to be what they were.
+// Whether whole numbers stored as doubles are certainly unrounded.
 bool isWithinDoubles(const ValueCensus& census) {
     return std::max(std::fabs(census.min), std::fabs(census.max)) <= 0x1p53;
 }
 
-// Reads everything to find out which codes there have to be.
+// Reads all values and chooses their code book.
 Survey chooseBook(const DenseSource& source, const ReadOptions& options, const Listener& listener,
-                  Volume& volume) {
+                  VolumeData& volume) {
     RawScan whole = scan(source, options, listener);
     settleNonFinite(source, whole, options.nanValue);
     volume.replaced = whole.nonFinite;
@@ -187,7 +185,7 @@ Survey chooseBook(const DenseSource& source, const ReadOptions& options, const L
     return survey;
 }
 
-void warnOfChanges(const DenseSource& source, const ReadOptions& options, const Volume& volume,
+void warnOfChanges(const DenseSource& source, const ReadOptions& options, const VolumeData& volume,
                    const Listener& listener) {
     for (const std::string& note : source.notes) listener.warn(source.where + ": " + note);
     if (volume.replaced > 0) {
@@ -200,7 +198,6 @@ void warnOfChanges(const DenseSource& source, const ReadOptions& options, const 
     }
 }
 
-// Adds the slices of a source to a tree, block by block.
 template <typename Tree>
 class SliceAdder {
   public:
@@ -215,7 +212,7 @@ class SliceAdder {
 
     DenseTreeBuilder<Tree>& builder() { return builder_; }
 
-    /// Reads a block by fill(block, values).
+    /// Reads blocks by fill(block, values).
     template <typename Fill, typename Tally>
     void add(int first, int slices, const std::byte* bytes, const Fill& fill, const Tally& tally) {
         requireMemory(source_.where, builder_.worstBytes(slices));
@@ -233,7 +230,7 @@ class SliceAdder {
     }
 
   private:
-    // Returns the voxels, if the builder's own memory is there.
+    // Returns the size after checking the builder's memory.
     static glm::ivec3 checked(const DenseSource& source) {
         const glm::ivec3 dims(source.dims);
         requireMemory(source.where, DenseTreeBuilder<Tree>::bytes(dims));
@@ -244,12 +241,12 @@ class SliceAdder {
     DenseTreeBuilder<Tree> builder_;
 };
 
-// Whether leaves are read when they are asked for: only where numbers become codes at once.
+// Whether leaves are read on demand, which needs types that become codes without a scan.
 bool readsLater(const DenseSource& source, const ReadOptions& options) {
     return options.readLater && !options.keepSource && source.rows && !needsScan(source.type);
 }
 
-// The codes whose voxels will probably be asked for.
+// Returns the codes whose voxels will probably be needed.
 SeenCodes wantedCodes(RawType type, const CodeBook& book, const ReadOptions& options) {
     const int count = 1 << (8 * rawTypeBytes(type));
     const std::string name = rawTypeName(type);
@@ -257,9 +254,8 @@ SeenCodes wantedCodes(RawType type, const CodeBook& book, const ReadOptions& opt
         [&](int code) { return code < count && options.isWanted(name, book.valueOf(Code(code))); });
 }
 
-// Keeps the most frequent of some values.
 void keepMostFrequent(const std::vector<double>& values, const std::vector<std::uint64_t>& counts,
-                      Volume& volume) {
+                      VolumeData& volume) {
     for (std::size_t i = 0; i < values.size(); ++i) {
         const FrequentValue one{values[i], counts[i]};
         std::optional<FrequentValue>& most = volume.mostFrequent;
@@ -269,10 +265,9 @@ void keepMostFrequent(const std::vector<double>& values, const std::vector<std::
     }
 }
 
-// Whether a value is not exact goes with it: then errors are measured, and what is frequent
-// counted.
+// Inexact codes lose information: then errors are measured and frequent values counted.
 void readCodes(const DenseSource& source, const ReadOptions& options, const Survey& survey,
-               const Listener& listener, Volume& volume) {
+               const Listener& listener, VolumeData& volume) {
     auto codes = std::make_shared<CodeTree>();
     SliceAdder<CodeTree::Tree> adder(source, codes->tree());
     const BookEncoder encoder(volume.codeBook);
@@ -315,7 +310,7 @@ void readCodes(const DenseSource& source, const ReadOptions& options, const Surv
     warnOfCodeError(source.where, volume, options, listener);
 }
 
-// @param nonFinite  what NaN and infinities are read as; empty: as they are
+// @param nonFinite  replaces NaN and infinities; empty: they stay
 template <typename Tree>
 std::shared_ptr<Tree> readTree(const DenseSource& source, std::optional<double> nonFinite,
                                const Listener& listener) {
@@ -337,7 +332,7 @@ std::shared_ptr<Tree> readTree(const DenseSource& source, std::optional<double> 
     return tree;
 }
 
-// @param asInt64  whether uint64 becomes int64 of the same bits
+// @param asInt64  reads uint64 as int64 of the same bits
 std::shared_ptr<openvdb::TreeBase> readSourceTree(const DenseSource& source,
                                                   std::optional<double> nonFinite, bool asInt64,
                                                   const Listener& listener) {
@@ -365,12 +360,12 @@ TreeGrid readSourceGrid(const DenseSource& source, std::optional<double> nonFini
     return grid;
 }
 
-// What a value takes in the grid that readSourceGrid makes.
+// Returns the bytes per value in readSourceGrid's grid.
 double gridValueBytes(RawType type) {
     return rawTypeBytes(type) > 4 || type == RawType::kUint32 ? 8 : 4;
 }
 
-// Where memory is limited, what the volume will take is known before any of it is taken.
+// Under a memory limit, checks the volume's memory before any of it is taken.
 void requireLimit(const DenseSource& source, const ReadOptions& options, bool keep,
                   const Listener& listener) {
     if (memoryLimit() == 0) return;
@@ -385,8 +380,7 @@ void requireLimit(const DenseSource& source, const ReadOptions& options, bool ke
     requireMemory(source.where, double(countMixedBlocks(source, stopping)) * bytesPerBlock);
 }
 
-// Says how many voxels are nothing, where any is.
-void warnOfNothing(const DenseSource& source, const Volume& volume, const Listener& listener) {
+void warnOfNothing(const DenseSource& source, const VolumeData& volume, const Listener& listener) {
     const std::uint64_t count = std::uint64_t(volume.box.voxels()) - volume.activeCount;
     if (count == 0) return;
     listener.warn(source.where + ": " +
@@ -395,8 +389,8 @@ void warnOfNothing(const DenseSource& source, const Volume& volume, const Listen
                   " as nothing");
 }
 
-// Reads a volume of which some voxels are nothing: inactive, with the least of the others' values
-// as background, which the clear end of ramps is and what dense formats hold there.
+// Reads a volume with voxels that are nothing. They become inactive, with the other voxels' least
+// value as background: this is the clear end of ramps, and the value for dense formats.
 Volume readWithNothing(const DenseSource& source, const ReadOptions& options,
                        const Listener& listener) {
     constexpr double kReadShare = 0.5;
@@ -412,14 +406,14 @@ Volume readWithNothing(const DenseSource& source, const ReadOptions& options,
     grid.apply<ScalarTrees>(
         [&](auto& tree) { dropValue(tree, nothing, leastOther(tree, nothing)); });
     const Listener coding = partOf(listener, kReadShare, 1);
-    Volume volume = volumeOfGrid(std::move(grid),
-                                 {coding, source.where, rawTypeName(source.valueType()), options});
+    VolumeData volume = volumeOfGrid(
+        std::move(grid), {coding, source.where, rawTypeName(source.valueType()), options});
     volume.name = source.name;
     volume.worldFromIndex = source.worldFromIndex;
     volume.box = box;
     warnOfChanges(source, options, volume, listener);
     warnOfNothing(source, volume, listener);
-    return volume;
+    return volumeOfFile(source.where, std::move(volume));
 }
 
 // @param anyUnsigned  as readDenseUnsigned
@@ -427,7 +421,7 @@ Volume read(const DenseSource& source, const ReadOptions& options, bool anyUnsig
             const Listener& listener) {
     if (source.nothing) return readWithNothing(source, options, listener);
     const double scanned = needsScan(source.type) ? 0.5 : 0.0;
-    Volume volume;
+    VolumeData volume;
     volume.codeBook = fixedBook(source.type);
     Survey survey;
     if (needsScan(source.type))
@@ -438,7 +432,7 @@ Volume read(const DenseSource& source, const ReadOptions& options, bool anyUnsig
     warnOfChanges(source, options, volume, listener);
     const bool keep = (options.keepSource || options.keepInexact) && !volume.codeBook.isExact();
     const bool later = readsLater(source, options);
-    // How much is asked for later, nobody knows.
+    // Memory for reading on demand cannot be known yet.
     if (!later) requireLimit(source, options, keep, listener);
     const double coded = keep ? 0.75 : 1;
     if (later) {
@@ -465,7 +459,7 @@ Volume read(const DenseSource& source, const ReadOptions& options, bool anyUnsig
     volume.labels = source.labels;
     volume.box = {glm::ivec3(0), glm::ivec3(source.dims) - 1};
     volume.worldFromIndex = source.worldFromIndex;
-    return volume;
+    return volumeOfFile(source.where, std::move(volume));
 }
 
 }  // namespace
@@ -482,7 +476,7 @@ Volume readDenseUnsigned(const DenseSource& source, const ReadOptions& options,
 Volume readSparse(const DenseSource& source, double background, const ReadOptions& options,
                   const Listener& listener) {
     constexpr double kReadShare = 0.5;
-    // Integers that doubles do not hold are counted where they are integers still.
+    // Rounding of uint64 shows only before values become doubles.
     double readError = 0;
     if (source.type == RawType::kUint64)
         readError = scan(source, options, partOf(listener, 0, 0.1)).census.rounding;
@@ -493,7 +487,7 @@ Volume readSparse(const DenseSource& source, double background, const ReadOption
     grid.apply<ScalarTrees>(
         [&](auto& tree) { dropValue(tree, background, std::isnan(background) ? 0 : background); });
     const Listener coding = partOf(listener, kReadShare, 1);
-    Volume volume =
+    VolumeData volume =
         volumeOfGrid(std::move(grid), {coding, source.where, rawTypeName(source.type), options});
     volume.name = source.name;
     volume.worldFromIndex = source.worldFromIndex;
@@ -502,7 +496,7 @@ Volume readSparse(const DenseSource& source, double background, const ReadOption
     warnOfChanges(source, options, volume, listener);
     volume.replaced = replaced;
     listener.report(1);
-    return volume;
+    return volumeOfFile(source.where, std::move(volume));
 }
 
 }  // namespace deltasplat

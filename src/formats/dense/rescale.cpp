@@ -32,7 +32,7 @@ void storeRun(const double* from, std::size_t count, std::byte* to) {
     for (std::size_t i = 0; i < count; ++i) {
         double number = from[i];
         if constexpr (std::is_integral_v<To>) {
-            // Beyond these, 64-bit limits are no doubles: the largest below 2^63 is meant.
+            // 64-bit limits are no doubles: take the largest double below.
             constexpr auto kLow = double(std::numeric_limits<To>::min());
             const double high =
                 std::min(double(std::numeric_limits<To>::max()),

@@ -16,7 +16,7 @@
 
 namespace deltasplat {
 
-/// Does what OpenVDB's changeBackground and pruneInactive do, which its library has.
+/// Does the same as OpenVDB's changeBackground and pruneInactive, without its library.
 template <typename Tree>
 void settleBackground(Tree& tree, const typename Tree::ValueType& background) {
     openvdb::tree::NodeManager<Tree> all(tree);
@@ -25,7 +25,7 @@ void settleBackground(Tree& tree, const typename Tree::ValueType& background) {
     inner.foreachBottomUp(openvdb::tools::InactivePruneOp<Tree>(tree));
 }
 
-/// Whether a value, as the grid's type has it, is to be dropped; NaN stands for itself.
+/// Returns a test for a value to drop, as the grid's type holds it; NaN matches NaN.
 template <typename Value>
 auto dropTest(double dropped) {
     return [dropped, same = valueAs<Value>(dropped)](Value value) {
@@ -33,7 +33,7 @@ auto dropTest(double dropped) {
     };
 }
 
-/// Returns the least value that stays, 0 if none does.
+/// Returns the least active value other than `dropped`, or 0 without any.
 template <typename Tree>
 double leastOther(const Tree& tree, double dropped) {
     const auto isDropped = dropTest<typename Tree::ValueType>(dropped);
@@ -53,7 +53,7 @@ double leastOther(const Tree& tree, double dropped) {
     return found == least.end() || std::isinf(*found) ? 0 : *found;
 }
 
-/// Makes inactive what has a value, and what is inactive have another.
+/// Makes voxels of value `dropped` inactive, and gives all inactive voxels a new background.
 template <typename Tree>
 void dropValue(Tree& tree, double dropped, double newBackground) {
     using Value = typename Tree::ValueType;
@@ -83,21 +83,18 @@ struct Rescale {
     bool isIdentity() const { return slope == 1 && intercept == 0; }
 };
 
-/// Returns the type that holds rescaled values: float32 for what has at most 16 bits and for
-/// float32, float64 for others.
+/// Returns the type of rescaled values: float32 for at most 16 bits and float32, else float64.
 RawType rescaledType(RawType type);
 
-/// Returns the type of whole numbers that holds the values from `least` to `most` rescaled; nothing
-/// if they become real or too large.
+/// Returns an integer type for the rescaled range; nothing if values become real or too large.
 std::optional<RawType> rescaledWholeType(double least, double most, const Rescale& rescale);
 
-/// Rescales `count` values of `type` into `to`, in the processor's byte order, as `toType`. What
-/// whole numbers cannot hold goes to the nearest that they can.
+/// Rescales `count` values of `type` to `toType` in native byte order. Integers saturate.
 void rescaleValues(const std::byte* from, std::size_t count, RawType type, bool bigEndian,
                    const Rescale& rescale, RawType toType, std::byte* to);
 
-/// Returns the source with its values rescaled; itself if the rescale is the identity.
-/// @param type  that they get; empty: rescaledType
+/// Returns the source with rescaled values, or itself for the identity.
+/// @param type  of the new values; empty: rescaledType
 DenseSource rescaled(DenseSource source, const Rescale& rescale, std::optional<RawType> type = {});
 
 }  // namespace deltasplat

@@ -42,30 +42,27 @@ namespace deltasplat {
 
 namespace {
 
-/// Writes the values of the voxels of a box into values[z][y][x]. To be called from any thread.
+/// Writes the values of a box into values[z][y][x]. Thread-safe.
 template <typename Value>
 using ReadBox = std::function<void(const IndexBox& box, Value* values)>;
 
-/// Returns what reads the values of a volume: from its source if there is one, otherwise from its
-/// codes. Inactive voxels have the value they hold, or the volume's background if that is NaN or
-/// infinite. Integers beyond 2^53 become the nearest double. The volume must outlive it.
+/// Returns a reader of a volume's values, from its source or else its codes. Inactive voxels have
+/// their own value, or the volume's background for NaN and infinity. Integers beyond 2^53 become
+/// the nearest double. The volume outlives the reader.
 ReadBox<double> boxReader(const Volume& volume);
 
-/// Returns what reads integers of 64 bits as they are, unsigned ones by their bits; empty for a
-/// volume whose source has none.
+/// Returns a reader of unchanged 64-bit integers, unsigned ones as bits; empty for other sources.
 ReadBox<std::int64_t> integerReader(const Volume& volume);
 
-/// Stores `count` values one after the other, little endian.
-/// @return the largest difference between a value and the one stored
+/// Stores `count` values as little endian. Returns the largest error.
 double storeValues(const double* values, std::size_t count, RawType type, std::byte* out);
 
-/// Stores integers of 64 bits, with a sign or without.
-/// @return 0
+/// Stores 64-bit integers, signed or not. Returns 0.
 double storeValues(const std::int64_t* values, std::size_t count, RawType type, std::byte* out);
 
 constexpr int kBlock = 8;
 
-// Where the voxels of a box lie in an array of its values.
+// Addresses the voxels of a box in the array of its values.
 template <typename Value>
 struct BoxArray {
     const IndexBox& box;
@@ -81,7 +78,7 @@ struct BoxArray {
     }
 };
 
-// Calls fill(row, count, number in its leaf of the row's first voxel) for the rows of a block.
+// Calls fill(row, count, index of the row's first voxel in its leaf) for each row of a block.
 template <typename Value, typename Fill>
 void forRows(const IndexBox& block, const BoxArray<Value>& array, const Fill& fill) {
     const glm::ivec3& min = block.min;
@@ -114,7 +111,7 @@ void readBlock(const Accessor& accessor, const ValueOf& valueOf, const IndexBox&
 template <typename Value, typename Tree, typename ValueOf>
 ReadBox<Value> treeReader(const Tree& tree, const ValueOf& valueOf) {
     return [&tree, valueOf](const IndexBox& box, Value* values) {
-        // The tree is not changed meanwhile, so the accessor need not hear of it.
+        // The tree stays unchanged, so it need not know the accessor.
         const openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false> accessor(tree);
         const BoxArray<Value> array{box, values};
         const glm::ivec3 first = box.min & ~(kBlock - 1);
@@ -133,8 +130,8 @@ ReadBox<Value> treeReader(const Tree& tree, const ValueOf& valueOf) {
 
 ReadBox<double> codeReader(const Volume& volume) {
     return treeReader<double>(
-        volume.codes->tree(),
-        [values = valuesOfCodes(volume.codeBook), background = volume.background](
+        volume.codes()->tree(),
+        [values = valuesOfCodes(volume.codeBook()), background = volume.background()](
             Code code, bool active) { return active ? values[code] : background; });
 }
 
@@ -150,24 +147,25 @@ double store(const double* values, std::size_t count, std::byte* out) {
 }
 
 ReadBox<double> boxReader(const Volume& volume) {
-    if (!volume.source) return codeReader(volume);
+    if (!volume.source()) return codeReader(volume);
     ReadBox<double> reader;
     const bool isUnsigned = holdsUnsigned(volume);
-    volume.source->grid.apply<ScalarTrees>([&](const auto& tree) {
+    volume.source()->grid.apply<ScalarTrees>([&](const auto& tree) {
         using T = typename std::decay_t<decltype(tree)>::ValueType;
-        reader =
-            treeReader<double>(tree, [=, background = volume.background](T value, bool) -> double {
-                if (!std::isfinite(double(value))) return background;
-                if constexpr (std::is_same_v<T, std::int64_t>)
-                    if (isUnsigned) return double(std::uint64_t(value));
-                return double(value);
-            });
+        reader = treeReader<double>(tree,
+                                    [=, background = volume.background()](T value, bool) -> double {
+                                        if (!std::isfinite(double(value))) return background;
+                                        if constexpr (std::is_same_v<T, std::int64_t>)
+                                            if (isUnsigned) return double(std::uint64_t(value));
+                                        return double(value);
+                                    });
     });
     return reader;
 }
 
 ReadBox<std::int64_t> integerReader(const Volume& volume) {
-    const auto* const tree = volume.source ? volume.source->grid.as<openvdb::Int64Tree>() : nullptr;
+    const auto* const tree =
+        volume.source() ? volume.source()->grid.as<openvdb::Int64Tree>() : nullptr;
     if (!tree) return {};
     return treeReader<std::int64_t>(*tree, [](std::int64_t value, bool) { return value; });
 }
@@ -181,8 +179,7 @@ double storeValues(const std::int64_t* values, std::size_t count, RawType, std::
     return 0;
 }
 
-/// An AtomicFile whose bytes pass through gzip from some point on. The same bytes in give the same
-/// bytes out: the gzip header holds neither a time nor a name.
+/// An AtomicFile that gzips its bytes from some point on, reproducibly: without time and name.
 class PackedOutput {
   public:
     /// @throw Error(kOutput) as AtomicFile
@@ -191,16 +188,16 @@ class PackedOutput {
     PackedOutput(const PackedOutput&) = delete;
     PackedOutput& operator=(const PackedOutput&) = delete;
 
-    /// Packs all bytes from here on. To be called once.
+    /// Packs all bytes from here on. Called at most once.
     void beginGzip();
     /// @throw Error(kOutput) if not all bytes can be written
     void write(const void* bytes, std::size_t size);
-    /// Ends writing, so that what is left to do in commit() is the renaming.
+    /// Finishes writing: commit() only renames.
     /// @throw Error(kOutput) if not all bytes could be written
     void close();
-    /// Gives the file its final name. close() comes first.
+    /// Gives the file its final name, after close().
     void commit() { file_.commit(); }
-    /// Gives a data file and this one, its header, their final names, as AtomicFile does.
+    /// Gives a data file and this file, its header, their final names, as AtomicFile does.
     void commitWithData(PackedOutput& data) { file_.commitWithData(data.file_); }
 
   private:
@@ -218,7 +215,7 @@ PackedOutput::~PackedOutput() {
 }
 
 void PackedOutput::beginGzip() {
-    constexpr int kGzipWindow = 15 + 16;  // the largest window; 16 asks for gzip's own header
+    constexpr int kGzipWindow = 15 + 16;  // largest window; 16 asks for gzip's own header
     constexpr int kMemoryLevel = 8;
     const int result = ::deflateInit2(&stream_, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kGzipWindow,
                                       kMemoryLevel, Z_DEFAULT_STRATEGY);
@@ -261,44 +258,44 @@ bool contains(const IndexBox& outer, const IndexBox& inner) {
            glm::all(glm::greaterThanEqual(outer.max, inner.max));
 }
 
-// Returns the voxels to write: those of the file that a grid was made from, if it was made so.
+// Returns the box to write: that of the original file if a grid was made from one.
 IndexBox boxOf(const Volume& volume) {
-    if (!volume.source) return volume.box;
-    const VdbMetadata& metadata = volume.source->grid.metadata;
+    if (!volume.source()) return volume.box();
+    const VdbMetadata& metadata = volume.source()->grid.metadata;
     const auto min = metadata.get<glm::ivec3>(kBoxMinKey);
     const auto max = metadata.get<glm::ivec3>(kBoxMaxKey);
-    if (!min || !max) return volume.box;
+    if (!min || !max) return volume.box();
     const IndexBox box{*min, *max};
-    constexpr double kMostVoxels = 0x1p62;  // as readers have it
+    constexpr double kMostVoxels = 0x1p62;  // the readers' own limit
     const glm::dvec3 sides = glm::dvec3(*max) - glm::dvec3(*min) + 1.0;
     const bool sound = !box.empty() && sides.x * sides.y * sides.z <= kMostVoxels;
-    return sound && (volume.empty() || contains(box, volume.box)) ? box : volume.box;
+    return sound && (volume.empty() || contains(box, volume.box())) ? box : volume.box();
 }
 
 void requireVoxels(const std::filesystem::path& file, const Volume& volume, const IndexBox& box) {
     if (!box.empty()) return;
     throw Error(ErrorCode::kInput, file.string(),
-                "\"" + volume.name + "\", which has no active voxels",
+                "\"" + volume.name() + "\", which has no active voxels",
                 "a volume with a bounding box (.vdb holds empty ones)");
 }
 
-// Returns the file's name, and of a box that is nearly empty what it would take.
+// Returns the file's name; for a nearly empty box with its size and cost.
 std::string whatIsWritten(const std::filesystem::path& file, const Volume& volume,
                           const IndexBox& box, double bytes) {
     constexpr double kNearlyEmpty = 1000;
     if (double(voxelsOf(box)) <
-        kNearlyEmpty * double(std::max<std::uint64_t>(volume.activeCount, 1)))
+        kNearlyEmpty * double(std::max<std::uint64_t>(volume.activeCount(), 1)))
         return file.string();
     const glm::ivec3 dims = box.dims();
     return file.string() + ": " + std::to_string(dims.x) + "x" + std::to_string(dims.y) + "x" +
            std::to_string(dims.z) + " voxels, " + humanBytes(bytes) + ", of which " +
-           std::to_string(volume.activeCount) + " are active (a .vdb stores those alone)";
+           std::to_string(volume.activeCount()) + " are active (a .vdb stores those alone)";
 }
 
-// Space on the disk is asked for before hours of work, as far as it can be known.
+// Checks the disk's free space before hours of work, as far as the size is known.
 void requireSpace(const std::filesystem::path& file, const std::string& what,
                   const DenseFormat& format, double bytes) {
-    constexpr double kMostPacking = 1032;  // zlib's best
+    constexpr double kMostPacking = 1032;  // zlib's best ratio
     const double least = format.gzipData ? bytes / kMostPacking : bytes;
     std::error_code error;
     const std::filesystem::path folder = absolute(file, error).parent_path();
@@ -310,19 +307,19 @@ void requireSpace(const std::filesystem::path& file, const std::string& what,
 }
 
 void noteLostStates(const Volume& volume, const IndexBox& box, WriteNotes& notes) {
-    if (!volume.hasBackground) return;
-    const std::uint64_t inactive = voxelsOf(box) - volume.activeCount;
+    if (!volume.hasBackground()) return;
+    const std::uint64_t inactive = voxelsOf(box) - volume.activeCount();
     if (inactive != 0) {
         notes.loss(
             countText(inactive,
                       "inactive voxel becomes a voxel like the others, with the value it holds",
                       "inactive voxels become voxels like the others, with the value they "
                       "hold") +
-            " (background " + numberText(volume.background) + ")");
+            " (background " + numberText(volume.background()) + ")");
     }
-    // What was no grid before has no more than its file's name.
-    if (volume.source && !volume.source->grid.metadata.text(kSourceTypeKey).empty()) return;
-    notes.loss("the grid's name \"" + volume.name + "\", class \"" + volume.gridClass +
+    // A volume that was no grid before had no name but the file's.
+    if (volume.source() && !volume.source()->grid.metadata.text(kSourceTypeKey).empty()) return;
+    notes.loss("the grid's name \"" + volume.name() + "\", class \"" + volume.gridClass() +
                "\" and other metadata are left out");
 }
 
@@ -331,11 +328,11 @@ DenseLayout layoutOf(const Volume& volume, const IndexBox& box, const ValueFacts
     DenseLayout layout;
     layout.dims = box.dims();
     layout.type = denseType(volume, facts, format.wideIntegers, notes);
-    layout.worldFromIndex = volume.worldFromIndex;
-    layout.worldFromIndex[3] = volume.worldFromIndex * glm::dvec4(box.min, 1);
-    layout.space = volume.space;
-    layout.lengthUnit = volume.lengthUnit;
-    layout.labels = volume.labels;
+    layout.worldFromIndex = volume.worldFromIndex();
+    layout.worldFromIndex[3] = volume.worldFromIndex() * glm::dvec4(box.min, 1);
+    layout.space = volume.space();
+    layout.lengthUnit = volume.lengthUnit();
+    layout.labels = volume.labels();
     return layout;
 }
 
@@ -344,7 +341,7 @@ void swapBytes(std::vector<std::byte>& data, std::size_t size) {
         std::reverse(value, value + std::ptrdiff_t(size));
 }
 
-// A run of slices that lie in the same layer of 8x8x8 blocks, as bytes of the file.
+// Slices within one layer of 8x8x8 blocks, as bytes of the file.
 class Layer {
   public:
     Layer(const IndexBox& box, RawType type, bool bigEndian)
@@ -356,7 +353,7 @@ class Layer {
     double bytes() const { return double(rowBytes_) * box_.dims().y * box_.dims().z; }
     const std::vector<std::byte>& data() const { return data_; }
 
-    /// Fills the layer on all threads; returns the largest error.
+    /// Fills the layer on all threads. Returns the largest error.
     template <typename Value>
     double fill(const ReadBox<Value>& read) {
         data_.resize(rowBytes_ * std::size_t(box_.dims().y) * std::size_t(box_.dims().z));

@@ -8,7 +8,7 @@
 
 namespace deltasplat {
 
-/// Writes one volume as a file of a dense format; as writeVolumes.
+/// Writes a volume as a file of a dense format; see writeVolumes.
 WriteReport writeDense(const std::filesystem::path& file, const DenseFormat& format,
                        const Volume& volume, const Listener& listener);
 

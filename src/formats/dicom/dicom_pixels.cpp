@@ -134,6 +134,10 @@ DicomCells unpackedCells(const DicomSlice& slice, HelperProcess& helper) {
     refuseFile(slice.file, "packed pixels", "a build with DELTASPLAT_DICOM=ON to unpack them");
 #endif
     const DicomPixels& pixels = slice.pixels;
+    double length = 0;
+    for (const DicomPixels::Piece& piece : pixels.pieces) length += double(piece.length);
+    constexpr double kCopies = 7;  // here, in the helper and on the way
+    requireMemory(slice.file.string(), kCopies * length);
     std::string packed;  // in one piece: GDCM does not join those of JPEG 2000
     for (const DicomPixels::Piece& piece : pixels.pieces) packed += readPiece(slice, piece);
     DicomCells cells;

@@ -30,7 +30,7 @@ void requireAlike(const std::filesystem::path& input, const DicomSlice& first,
         refuseInput(other.file.string(), "a slice of " + sizeText(other),
                     sizeText(first) + ", as in " + first.name(input));
     }
-    // A thousandth of a voxel over a thousand voxels is one voxel.
+    // An error of 1/1000 voxel adds up to one voxel over 1000 voxels.
     const double most =
         1e-3 * std::min(glm::length(first.alongRow), glm::length(first.alongColumn));
     if (glm::distance(first.alongRow, other.alongRow) > most ||
@@ -40,7 +40,7 @@ void requireAlike(const std::filesystem::path& input, const DicomSlice& first,
     }
 }
 
-// A gap that is far from the usual one is a slice that is missing, or there twice.
+// An unusual gap means a missing slice or a duplicate.
 void requireEven(const std::filesystem::path& input, const std::vector<DicomSlice>& slices) {
     const glm::dvec3 normal = slices.front().normal();
     std::vector<double> gaps;
@@ -98,7 +98,7 @@ std::string DicomSlice::name(const std::filesystem::path& input) const {
 
 DicomVolume arrangeSlices(const std::filesystem::path& input, std::vector<DicomSlice> slices) {
     const glm::dvec3 normal = slices.front().normal();
-    // Files of equal place and so equal key are refused below; names make the order certain.
+    // Equal places are refused below; file names make the order unique.
     std::sort(slices.begin(), slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {
         const double placeA = glm::dot(a.position, normal);
         const double placeB = glm::dot(b.position, normal);
@@ -148,7 +148,7 @@ constexpr std::uint32_t kDoseScaling = 0x3004000e;
 using Span = DicomMeaning::Span;
 using Table = DicomMeaning::Table;
 
-// Numbers of two bytes that stand for stored ones have their sign.
+// A 2-byte number that stands for stored numbers has their sign.
 std::optional<std::int64_t> storedNumber(const DicomItem& item, std::uint32_t tag, bool isSigned) {
     const std::vector<std::uint16_t> words = item.words(tag);
     if (words.empty()) return {};
@@ -163,8 +163,8 @@ std::optional<double> decimal(const std::string& where, const DicomItem& item, s
     refuseInput(where, std::string(name) + " " + printable(item.text(tag)), "a number");
 }
 
-// The limit may lie above the value or below. Both are words that stand for the bits of a cell: one
-// of 8 bits has the lower byte, if the upper is 0 or repeats its sign.
+// The limit may lie above or below the value. Both are words for a cell's bits: an 8-bit cell takes
+// the low byte if the high byte is 0 or the sign.
 std::optional<Span> paddingOf(const DicomItem& file, const DicomBits& bits) {
     const auto value = storedNumber(file, kPadding, bits.isSigned);
     if (!value) return {};
@@ -184,7 +184,7 @@ bool isWhole(double number) {
     return number == std::floor(number);
 }
 
-// Returns the table that was made last if that is of the same item, or equal.
+// Returns the last table if made from the same item or equal.
 template <typename Make>
 std::shared_ptr<const Table> tableOf(const DicomItem& item, DicomLastTable& last,
                                      const Make& make) {
@@ -201,7 +201,7 @@ std::shared_ptr<const Table> tableOf(const DicomItem& item, DicomLastTable& last
     return last.table;
 }
 
-// Numbers of 8 bits come one in a byte, or one in a word of two.
+// Reads a table. 8-bit values are stored one per byte, or one per 2-byte word.
 std::vector<double> tableData(const DicomItem& item, std::size_t entries, int bits) {
     const auto found = item.values.find(kTableData);
     if (found == item.values.end()) return {};
@@ -209,7 +209,7 @@ std::vector<double> tableData(const DicomItem& item, std::size_t entries, int bi
     std::vector<double> values;
     if (bits <= 8 && bytes.size() < 2 * entries) {
         std::string text = bytes;
-        // Two in a word, of which the lower byte is the first.
+        // Two values share a word, the first in the low byte.
         if (item.bigEndian)
             for (std::size_t i = 0; i + 1 < text.size(); i += 2) std::swap(text[i], text[i + 1]);
         for (const char byte : text) values.push_back(static_cast<unsigned char>(byte));
@@ -240,7 +240,7 @@ Table modalityTable(const std::string& where, const DicomItem& item, bool isSign
     return table;
 }
 
-// The first and the last number that a real world value is given for.
+// The range of stored numbers that a real world mapping covers.
 std::optional<Span> realSpan(const DicomItem& item, bool isSigned) {
     const auto first = storedNumber(item, kRealFirst, isSigned);
     const auto last = storedNumber(item, kRealLast, isSigned);
@@ -254,7 +254,7 @@ std::optional<Span> realSpan(const DicomItem& item, bool isSigned) {
     return Span{std::int64_t(std::ceil(low[0])), std::int64_t(std::floor(high[0]))};
 }
 
-// Returns a table without values if there is none.
+// The table has no values if the item has none.
 Table realTable(const std::string& where, const DicomItem& item, const Span& span) {
     const auto found = item.values.find(kRealTable);
     if (found == item.values.end()) return {};
@@ -297,7 +297,7 @@ void setRealWorld(const std::string& where, const DicomItem& item, bool isSigned
         what + "other (each slice has its own)");
 }
 
-// A slope of 0 would make all values one.
+// A slope of 0 would make all values equal.
 double usableSlope(double slope, const char* name, DicomNotes& notes) {
     if (slope != 0) return slope;
     notes.add(std::string(name) + " is 0, which makes all values one; 1 is taken");
@@ -373,13 +373,12 @@ DicomRange rangeOf(const DicomBits& bits, const DicomMeaning& meaning) {
             isWhole(meaning.rescale.slope) && isWhole(meaning.rescale.intercept)};
 }
 
-// Siemens' mosaics. What they say of themselves stands in private elements: how many slices there
-// are in (0019,xx0A), and all in a table of texts (0029,xx10).
+// Siemens' mosaics. Private elements give the number of slices (0019,xx0A) and texts (0029,xx10).
 namespace {
 
 constexpr std::uint32_t kImageType = 0x00080008;
 
-// A creator of private elements names the block that they stand in.
+// Finds the block of private elements that a creator reserved.
 std::uint32_t blockOf(const DicomElements& elements, std::uint32_t group,
                       const std::string& creator) {
     for (std::uint32_t block = 0x10; block <= 0xff; ++block) {
@@ -395,10 +394,9 @@ std::uint32_t littleEndian(const std::string& bytes, std::size_t place) {
     return number;
 }
 
-// Entries have a name of 64 bytes, five numbers, of which the fourth counts items, and items of
-// four numbers, of which the second is a length, and a text that fills words of four bytes. The
-// first version of tables has no mark, and has lengths as first numbers, to which the number of the
-// first entry's items is added.
+// Reads Siemens' table. An entry is a 64-byte name, five numbers (the fourth counts items) and
+// items: four numbers (the second is a length) and a text padded to 4 bytes. Version 1 has no mark,
+// and its length is the first number, increased by the first entry's number of items.
 std::map<std::string, std::vector<std::string>> entriesOf(const std::string& bytes) {
     std::map<std::string, std::vector<std::string>> entries;
     constexpr std::uint32_t kMark = 77, kMostOfFirst = 128;
@@ -438,10 +436,9 @@ std::vector<double> numbersOf(const std::vector<std::string>& texts) {
     return numbers;
 }
 
-// What a mosaic says of itself.
 struct Layout {
     int slices = 0;
-    std::vector<double> normal;  // the way from slice to slice; empty if it is not said
+    std::vector<double> normal;  // direction from slice to slice; empty if unknown
 };
 
 Layout layoutOf(const DicomElements& elements) {
@@ -497,7 +494,7 @@ std::vector<DicomSlice> slicesOfMosaic(const DicomElements& elements, const Dico
     DicomSlice tile = picture;
     tile.columns = picture.columns / side;
     tile.rows = picture.rows / side;
-    // The place is that of a slice as large as the mosaic, in the middle of which the slice lies.
+    // The header places a slice as large as the mosaic; the real slice is at its centre.
     tile.position += picture.alongRow * ((picture.columns - tile.columns) / 2.0) +
                      picture.alongColumn * ((picture.rows - tile.rows) / 2.0);
     std::vector<DicomSlice> slices;

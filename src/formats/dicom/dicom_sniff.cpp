@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: DICOM PS3.5 2023, chapter 7, and PS3.10, chapter 7: data elements and the file's
-// header.
+// Based on: DICOM PS3.5 2023, chapter 7, and PS3.10, chapter 7: data elements, file header.
 #include "formats/dicom/dicom_sniff.h"
 
 #include <algorithm>
@@ -28,13 +27,12 @@ bool isOneOf(std::string_view types, std::string_view type) {
     return false;
 }
 
-// The first elements of a header, or of what may be a data set.
+// The first elements of a header or a presumed data set.
 class FirstElements {
   public:
     FirstElements(std::string_view bytes, DicomSyntax syntax) : bytes_(bytes), syntax_(syntax) {}
 
-    // Returns the class that elements in the order of their tags name: (0008,0016), which every
-    // image has, or in a header (0002,0002). Nothing where there is none.
+    // Returns the class in ascending elements: (0008,0016) of images, (0002,0002) of headers.
     std::string_view className() {
         std::uint64_t last = 0;
         for (int i = 0; i < 16; ++i) {
@@ -118,7 +116,7 @@ std::string nameOf(const std::string& uid) {
     return uid.empty() ? "\"\"" : printable(uid);
 }
 
-// "512x512x120", or how many files there are where they are no slices.
+// "512x512x120", or the number of files if they are no slices.
 std::string sizeText(const DicomSeries& series) {
     if (series.slices.empty() || series.error)
         return std::to_string(series.files) + (series.files == 1 ? " file" : " files");
@@ -126,7 +124,7 @@ std::string sizeText(const DicomSeries& series) {
            "x" + std::to_string(series.slices.size());
 }
 
-// Of some dozens of series every UID, from which one has to be chosen.
+// Lists UIDs to choose from; long enough for some dozens of series.
 std::string listText(const std::vector<DicomSeries>& all) {
     std::string list;
     for (const DicomSeries& series : all) {

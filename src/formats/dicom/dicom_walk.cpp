@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: DICOM PS3.5 2023, chapters 7 and 10 and annex A: data elements, sequences, transfer
-// syntaxes.
+// Based on: DICOM PS3.5 2023, chapters 7 and 10, annex A: elements, sequences, transfer syntaxes.
 #include "formats/dicom/dicom_walk.h"
 
 #include <algorithm>
@@ -26,10 +25,9 @@ constexpr std::uint32_t kSequenceEnd = 0xfffee0dd;
 constexpr std::uint32_t kTransferSyntax = 0x00020010;
 constexpr std::uint32_t kPixels = 0x7fe00010;
 constexpr int kMostDepth = 16;
-constexpr std::size_t kHeldBeside = 128;  // bytes that a value takes besides its own
+constexpr std::size_t kHeldBeside = 128;  // bytes of overhead per value
 
-// Sequences whose items are kept: tables of values, real world values, and what frames have of
-// their own.
+// Whether a sequence's items are kept: value tables, real world mappings, and functional groups.
 bool isKept(std::uint32_t sequence) {
     constexpr std::array<std::uint32_t, 8> kKept{
         0x00209113,  // PlanePositionSequence
@@ -44,7 +42,7 @@ bool isKept(std::uint32_t sequence) {
     return std::find(kKept.begin(), kKept.end(), sequence) != kKept.end();
 }
 
-// Returns the longest value of an element that is kept.
+// Returns the longest kept value of an element.
 std::uint64_t mostKept(std::uint32_t tag) {
     const bool isTable = tag == 0x00283006 || tag == 0x00409212 ||  // tables of values
                          tag == 0x3004000c ||                       // offsets of frames
@@ -79,8 +77,7 @@ class Walk {
             } catch (const Error& error) {
                 if (error.code() != ErrorCode::kInput || !hasPixels_) throw;
                 syntax_ = syntax;
-                // What fills a file up says nothing, but elements that are cut behind the pixels
-                // may have said what those mean.
+                // Padding here is harmless, but cut elements may have given the pixels' meaning.
                 if (beginsElement(start)) throw;
                 break;
             }
@@ -91,7 +88,7 @@ class Walk {
   private:
     struct Head {
         std::uint32_t tag = 0;
-        std::string type;  // empty where types are implicit
+        std::string type;  // empty if implicit
         std::uint32_t length = 0;
     };
 
@@ -132,7 +129,7 @@ class Walk {
         return value;
     }
 
-    // What is kept takes more memory than it does in the file.
+    // Requests memory for kept values, which exceeds their size in the file.
     void hold(std::size_t bytes) {
         constexpr std::size_t kAtOnce = 1 << 20;
         held_ += bytes;
@@ -161,7 +158,6 @@ class Walk {
         return head;
     }
 
-    // Whether the element here says the type of its value.
     bool saysType() {
         const std::uint64_t here = place_;
         bool says = false;
@@ -173,8 +169,7 @@ class Walk {
         return says;
     }
 
-    // Whether what begins here, and cannot be read, is an element of those before the pixels in
-    // order: by its type, or as one of a group that is read.
+    // Whether unreadable bytes begin an element before pixels: by a type or a group that is read.
     bool beginsElement(std::uint64_t start) {
         constexpr std::array<std::uint32_t, 9> kRead{0x0008, 0x0018, 0x0019, 0x0020, 0x0028,
                                                      0x0029, 0x0040, 0x3004, 0x5200};
@@ -186,8 +181,8 @@ class Walk {
                std::find(kRead.begin(), kRead.end(), group) != kRead.end();
     }
 
-    // The group that says how the rest is written; it is itself always written in one way. A second
-    // one may begin the data set, in the data set's way.
+    // Walks group 2, which is always written in explicit little endian and gives the encoding of
+    // the rest. A second group 2, in the data set's encoding, may follow.
     void walkHeader() {
         while (size_ - place_ >= 2) {
             const std::uint64_t here = place_;
@@ -208,18 +203,18 @@ class Walk {
         syntax_.bigEndian = name == kPlain + ".2";
         elements_.packed =
             !name.empty() && name != kPlain && !syntax_.bigEndian && name != kPlain + ".1";
-        // Some say one and write the other.
+        // Some files declare one encoding and use the other.
         syntax_.explicitTypes = saysType();
     }
 
     void walkElement(std::uint64_t end, int depth, DicomItem* into) {
         const Head head = readHead(end);
         if (head.tag >> 16 == 0xfffe) {
-            // A mark that ends what its length has ended already.
+            // An end mark after a sequence or item of explicit length.
             if (head.length == 0 && head.tag != kItem) return;
             refusePlace("items are outside of sequences");
         }
-        // Where types are not told, what is to be kept is known by its tag.
+        // Without explicit types, kept sequences are recognised by their tags.
         const bool isSequence = head.type == "SQ" || (isKept(head.tag) && head.type != "OB" &&
                                                       (head.type.empty() || head.type == "UN"));
         if (head.length != kUndefined && !isSequence) return walkValue(head, end, depth, into);
@@ -231,7 +226,7 @@ class Walk {
         }
         const bool open = head.length == kUndefined;
         if (!open) requireLeft(head.length, end);
-        // What is of unknown type is written without types.
+        // Content of unknown type is written with implicit types.
         const DicomSyntax before = syntax_;
         if (head.type == "UN") syntax_ = {false, false};
         walkItems(open ? end : place_ + head.length, depth, open,
@@ -255,7 +250,7 @@ class Walk {
         }
     }
 
-    // Pixels of the data set, or of an icon in a sequence.
+    // Walks packed pixels, of the data set or of an icon in a sequence.
     void walkPacked(int depth, std::uint64_t end) {
         const bool isImage = depth == 0 && !hasPixels_;
         if (isImage && !elements_.packed) refusePlace("pixels have no length");
@@ -263,7 +258,7 @@ class Walk {
         if (isImage) hasPixels_ = true;
     }
 
-    // Items up to `end`, or up to the mark that ends an open sequence.
+    // Walks items up to `end`, or to the end mark of an open sequence.
     void walkItems(std::uint64_t end, int depth, bool open, std::vector<DicomItem>* into) {
         if (depth >= kMostDepth) refusePlace("sequences are nested too deeply");
         while (open || place_ < end) {
@@ -275,7 +270,7 @@ class Walk {
             if (head.tag != kItem) refusePlace("sequence holds something else than items");
             DicomItem* item = nullptr;
             if (into != nullptr) {
-                hold(3 * sizeof(DicomItem));  // more while they are moved
+                hold(3 * sizeof(DicomItem));  // growth of the vector holds copies
                 item = &into->emplace_back();
                 item->bigEndian = syntax_.bigEndian;
             }
@@ -303,7 +298,7 @@ class Walk {
         }
     }
 
-    // Packed pixels are a list of pieces.
+    // Walks packed pixels, which are a list of pieces.
     void walkFragments(std::uint64_t end, std::vector<DicomElements::Piece>* into) {
         while (true) {
             const Head head = readHead(end);
@@ -323,11 +318,10 @@ class Walk {
     std::uint64_t place_ = 0;
     DicomSyntax syntax_;
     bool hasPixels_ = false;
-    std::size_t held_ = 0;  // since memory was asked for
+    std::size_t held_ = 0;  // bytes since the last request for memory
     DicomElements elements_;
 };
 
-// Returns the numbers of type T that the bytes of an element are.
 template <typename T>
 std::vector<T> numbersIn(const DicomItem& item, std::uint32_t tag) {
     const auto found = item.values.find(tag);

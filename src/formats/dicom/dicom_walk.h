@@ -9,55 +9,50 @@
 
 namespace deltasplat {
 
-/// The elements of a data set, or of an item of a sequence. Tags are group << 16 | element; of two
-/// elements with one tag the first counts.
+/// Elements of a data set or sequence item by tag (group << 16 | element); a tag's first one
+/// counts.
 struct DicomItem {
     bool bigEndian = false;
-    /// Values of at most 1 KiB, and longer ones that are tables of numbers.
+    /// Values of at most 1 KiB, and longer tables of numbers.
     std::map<std::uint32_t, std::string> values;
-    /// The items of sequences that say what numbers mean, or where frames lie.
+    /// Items of sequences that give the meaning of numbers or the places of frames.
     std::map<std::uint32_t, std::vector<DicomItem>> sequences;
 
-    /// Returns a text without what fills it up; empty if there is no such element.
+    /// Returns a text without its padding; empty if the element is missing.
     std::string text(std::uint32_t tag) const;
-    /// Returns a number of two bytes, or `missing`.
+    /// Returns a 2-byte number, or `missing`.
     int number(std::uint32_t tag, int missing) const;
-    /// Returns the numbers of an element that is text, "1\0\0"; none if one of them is no finite
-    /// number, or beyond `most`.
+    /// Returns the numbers of a text "1\0\0"; none if one is no finite number or exceeds `most`.
     std::vector<double> decimals(std::uint32_t tag, double most) const;
-    /// Returns the numbers of two bytes that an element holds.
+    /// Returns an element's 2-byte numbers.
     std::vector<std::uint16_t> words(std::uint32_t tag) const;
-    /// Returns the numbers of eight bytes that an element holds, none if one is not finite.
+    /// Returns an element's 8-byte numbers; none if one is not finite.
     std::vector<double> doubles(std::uint32_t tag) const;
-    /// Returns the first item of a sequence; null if there is none.
+    /// Returns a sequence's first item, or null.
     const DicomItem* first(std::uint32_t sequence) const;
 };
 
-/// What stands in a DICOM file.
 struct DicomElements : DicomItem {
-    std::string syntax;   ///< the name of how the file is written
+    std::string syntax;   ///< transfer syntax UID
     bool packed = false;  ///< the pixels are compressed
-    /// Where the pixels lie in the file: in one piece, or if packed as a table of offsets, which
-    /// may be empty, and the packed pieces.
+    /// The pixels' place: one piece, or if packed a table of offsets (maybe empty) and the pieces.
     struct Piece {
         std::uint64_t start = 0;
         std::uint64_t length = 0;
     };
     std::vector<Piece> pixels;
-    bool pixelWords = true;  ///< the pixels are words of two bytes, of which the order is one
+    bool pixelWords = true;  ///< pixels are 2-byte words, so byte order matters
 
     std::uint64_t pixelBytes() const;
-    /// Whether the file is a table of contents, as DICOMDIR is under that name.
+    /// Whether the file is a table of contents, usually named DICOMDIR.
     bool isContents() const { return text(0x00020002) == "1.2.840.10008.1.3.10"; }
 };
 
-/// Walks the elements of a DICOM file. What others read is read: elements in any order, group 2
-/// twice, bytes behind the last element, a data set without its header, types of values where the
-/// header says that there are none, or none where it says that there are.
-/// Of a table of contents only the header is walked.
-/// @throw Error(kInput) if an element does not lie within the file, or within the one around it,
-/// and
-///        is not what fills the file up behind the pixels; Error(kFailed) if memory is short
+/// Walks a DICOM file's elements. Tolerates deviations that other readers accept: any order, group
+/// 2 twice, bytes after the last element, a missing header, value types that are present or absent
+/// against the header. Of a table of contents only the header is walked.
+/// @throw Error(kInput) if an element leaves the file or its enclosing element and is not padding
+///        after the pixels; Error(kFailed) if memory is short
 DicomElements walkDicom(const std::filesystem::path& file);
 
 }  // namespace deltasplat

@@ -28,7 +28,7 @@ void requireEnough(const std::string& where, const FileBytes& file, double ratio
                     std::to_string(std::int64_t(height)) + " pixels");
 }
 
-// Takes numbers and texts from a file, one behind the other; zeros once it has ended.
+// Reads numbers and texts from a file in sequence; zeros after its end.
 class Reader {
   public:
     explicit Reader(const FileBytes& file) : file_(file) {}
@@ -47,13 +47,13 @@ class Reader {
         if (!ended()) ++place_;
         return value;
     }
-    // The first byte counts least.
+    // Little endian.
     std::uint32_t number(int bytes) {
         std::uint32_t value = 0;
         for (int i = 0; i < bytes; ++i) value |= std::uint32_t(byte()) << (8 * i);
         return value;
     }
-    // A text that ends with 0; ones of more than 255 bytes there are not in these files.
+    // A text that ends with 0. These formats have none of more than 255 bytes.
     std::string text() {
         std::string text;
         for (char c = char(byte()); c != 0; c = char(byte())) {
@@ -66,12 +66,12 @@ class Reader {
   private:
     const FileBytes& file_;
     std::uint64_t place_ = 0;
-    std::array<std::uint8_t, 4096> bytes_{};  // those that were read last
+    std::array<std::uint8_t, 4096> bytes_{};  // most recently read
     std::uint64_t begin_ = 0;
     std::size_t length_ = 0;
 };
 
-// One picture of an .exr, by its header.
+// One picture of an .exr, from its header.
 struct ExrPart {
     double width = 0, height = 0;
     double pixelBytes = 0;
@@ -79,7 +79,7 @@ struct ExrPart {
     bool isDeep = false;
     std::optional<std::array<double, 2>> tile;
 
-    // Of its kinds of packing, lines of a block, and the most bytes that one unpacks to.
+    // Per kind of compression: lines per block, and the most bytes that one byte unpacks to.
     static constexpr std::array<double, 10> kLines{1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
     static constexpr std::array<double, 10> kRatios{1,    64, 1032, 1032,   0x1p13,
                                                     1376, 16, 16,   0x1p13, 0x1p13};
@@ -89,11 +89,11 @@ void readExrChannels(Reader& reader, ExrPart& part) {
     while (!reader.ended() && !reader.text().empty()) {
         const std::uint32_t type = reader.number(4);
         reader.skip(12);
-        part.pixelBytes += type == 1 ? 2 : 4;  // halves, or floats and whole numbers
+        part.pixelBytes += type == 1 ? 2 : 4;  // half, or float and uint
     }
 }
 
-// Returns nothing behind the last part.
+// Returns nothing after the last part.
 std::optional<ExrPart> readExrPart(Reader& reader) {
     ExrPart part;
     bool isAny = false;
@@ -106,7 +106,7 @@ std::optional<ExrPart> readExrPart(Reader& reader) {
         if (reader.ended()) return {};
         if (name == "channels") readExrChannels(value, part);
         if (name == "compression") part.compression = value.number(1);
-        // Of samples nobody knows how many there are, but of each pixel their number is stored.
+        // The number of deep samples is unknown, but each pixel stores its count.
         if (name == "type") part.isDeep = value.text().starts_with("deep");
         if (name == "tiles") part.tile = {double(value.number(4)), double(value.number(4))};
         if (name != "dataWindow") continue;
@@ -119,7 +119,7 @@ std::optional<ExrPart> readExrPart(Reader& reader) {
     return part;
 }
 
-// OpenEXR keeps a block as it is stored, as it is unpacked and between, two for each thread.
+// OpenEXR holds a block three times (stored, unpacked, intermediate), two blocks per thread.
 bool requireExr(const std::string& where, const FileBytes& file) {
     constexpr double kTimes = 3;
     constexpr double kMuch = double(64 << 20);
@@ -145,7 +145,7 @@ bool requireExr(const std::string& where, const FileBytes& file) {
     return mayThread;
 }
 
-// What comes in several passes is held whole.
+// Progressive JPEGs are held whole.
 void requireJpeg(const std::string& where, const FileBytes& file) {
     constexpr int kLastOfOnePass = 0xc1;
     Reader reader(file);
@@ -175,14 +175,14 @@ void requireBmp(const std::string& where, const FileBytes& file) {
 }  // namespace
 
 double mostRatio(const std::string& packing) {
-    if (packing == "none") return 8;  // single bits become bytes
+    if (packing == "none") return 8;  // bits become bytes
     if (packing == "zstd") return 0x1p15;
     if (packing.rfind("ccitt", 0) == 0) return 0x1p18;
     return 0x1p13;
 }
 
 bool isEnough(double packedBytes, double ratio, double unpackedBytes) {
-    constexpr double kOthers = 1024;  // so many bytes may stand elsewhere
+    constexpr double kOthers = 1024;  // bytes stored elsewhere
     return unpackedBytes <= (packedBytes + kOthers) * ratio;
 }
 
@@ -208,7 +208,7 @@ bool isFrame(int marker) {
                                         marker != kOther && marker != kArithmetic);
 }
 
-// Markers that no length follows.
+// Markers without a length.
 bool isAlone(int marker) {
     return marker <= 0x01 || (marker >= 0xd0 && marker <= 0xd8);
 }
@@ -219,7 +219,7 @@ std::optional<JpegFrame> findJpegFrame(const std::function<int()>& next) {
     constexpr int kEnd = 0xd9, kScan = 0xda;
     const auto word = [&] {
         const int high = next();
-        return high << 8 | next();  // -1 behind the last byte
+        return high << 8 | next();  // -1 after the last byte
     };
     for (int byte = next(); byte >= 0; byte = next()) {
         if (byte != 0xff) continue;

@@ -21,7 +21,6 @@ bool isDigit(char c) {
     return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-// The end of the run of digits that begins at `begin`.
 std::size_t endOfDigits(const std::string& text, std::size_t begin) {
     while (begin < text.size() && isDigit(text[begin])) ++begin;
     return begin;
@@ -74,7 +73,7 @@ std::string StackPattern::nameOf(std::uint64_t number) const {
 
 namespace {
 
-// The number of a name such as slice.%04d.png: %d, or %01d to %09d; the last one counts.
+// Finds the counter in a name such as slice.%04d.png: %d, or %01d to %09d; the last one counts.
 std::optional<StackPattern> percentPattern(const std::filesystem::path& folder,
                                            const std::string& name) {
     const std::string signs = maskedEscapes(name);
@@ -109,7 +108,6 @@ std::optional<StackPattern> stackPattern(const std::filesystem::path& input) {
 
 namespace {
 
-// The numbers of a stack have the same distance each.
 void requireEvenNumbers(const std::filesystem::path& input, const StackPattern& pattern,
                         const std::map<std::uint64_t, std::filesystem::path>& files) {
     if (files.size() < 2) return;
@@ -151,7 +149,6 @@ std::vector<std::filesystem::path> stackFiles(const std::filesystem::path& input
 
 namespace {
 
-// Where the runs of digits in a name begin and end.
 std::vector<std::pair<std::size_t, std::size_t>> numbersIn(const std::string& name) {
     std::vector<std::pair<std::size_t, std::size_t>> runs;
     for (std::size_t i = 0; i < name.size(); ++i) {
@@ -168,7 +165,7 @@ std::string runOf(const std::string& name, std::size_t run) {
     return name.substr(begin, end - begin);
 }
 
-// Names that differ in nothing but numbers: those of a stack if it is one number that differs.
+// For names that differ in numbers only: if a single number differs, they are a stack.
 void requireEvenNames(const std::filesystem::path& folder, const std::vector<std::string>& names) {
     std::vector<std::size_t> counters;
     const auto runs = numbersIn(names.front());

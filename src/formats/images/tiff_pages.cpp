@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: TIFF 6.0 (Aldus, 1992), sections 2, 8 and 15, and BigTIFF as libtiff has it: wider
-// numbers, all else alike.
+// Based on: TIFF 6.0 (Aldus, 1992), sections 2, 8 and 15; libtiff's BigTIFF with wider numbers.
 #include "formats/images/tiff_pages.h"
 
 #include <algorithm>
@@ -29,10 +28,10 @@ constexpr std::uint64_t kUnpacked = 1, kSeparate = 2, kWhiteIsZero = 0, kBlackIs
                         kPalette = 3, kYcbcr = 6;
 constexpr std::uint64_t kReducedOrMask = 1 | 4, kOldReduced = 2;
 constexpr int kText = 2, kShort = 3, kRatio = 5;
-// No description of a volume is longer.
+// Longer than any description of a volume.
 constexpr std::uint64_t kMostText = std::uint64_t{1} << 28;
 
-// How OpenImageIO names packings; those that are not here are as any other.
+// OpenImageIO's names of compressions; others need no name here.
 const char* packingName(std::uint64_t compression) {
     switch (compression) {
         case kUnpacked:
@@ -48,15 +47,14 @@ const char* packingName(std::uint64_t compression) {
     }
 }
 
-// Bytes of one value of each type; 0 for types that there are none of.
+// Bytes per value of each type; 0 for undefined types.
 constexpr std::array<std::uint64_t, 19> kTypeBytes{0, 1, 1, 2, 4, 8, 1, 1, 2, 4,
                                                    8, 4, 8, 4, 0, 0, 8, 8, 8};
 
-// One line of a page's table.
 struct Entry {
     int type = 0;
     std::uint64_t count = 0;
-    std::uint64_t place = 0;  // of its values
+    std::uint64_t place = 0;  // offset of its values
 };
 using Table = std::map<int, Entry>;
 
@@ -105,7 +103,6 @@ class Walk {
         return number(bytes, at, std::size_t(pages_.offsetBytes));
     }
 
-    // Returns the place of the first page.
     std::uint64_t readHead() {
         const std::string head = bytesAt(0, std::min<std::uint64_t>(16, file_.size()));
         pages_.bigEndian = head.starts_with("MM");
@@ -120,7 +117,7 @@ class Walk {
         return number(head, 8, 8);
     }
 
-    // Returns the place of the next page, or 0.
+    // Returns the offset of the next page, or 0.
     std::uint64_t walkPage(std::uint64_t place) {
         const std::size_t width = std::size_t(pages_.offsetBytes);
         const std::size_t countBytes = width == 8 ? 8 : 2;
@@ -150,13 +147,13 @@ class Walk {
         return offset(bytes, last);
     }
 
-    // Short values stand in the table itself, at `field`.
+    // Short values are stored in the entry itself, at `field`.
     Entry readEntry(const std::string& bytes, std::size_t at, std::uint64_t field) const {
         const std::size_t width = std::size_t(pages_.offsetBytes);
         Entry entry;
         entry.type = int(number(bytes, at + 2, 2));
         entry.count = offset(bytes, at + 4);
-        // Types that nobody knows are nobody's to read.
+        // Unknown types have no readable values.
         if (entry.type >= int(kTypeBytes.size())) entry.type = 0;
         const std::uint64_t valueBytes = kTypeBytes[std::size_t(entry.type)];
         if (valueBytes == 0) return entry;
@@ -167,7 +164,7 @@ class Walk {
         return entry;
     }
 
-    // Returns the whole numbers of a line of the table; none if it has none.
+    // Returns an entry's integers; none if it has no integers.
     std::vector<std::uint64_t> valuesOf(const Table& table, int tag) const {
         std::vector<std::uint64_t> values;
         const auto found = table.find(tag);
@@ -193,7 +190,7 @@ class Walk {
         return value;
     }
 
-    // Numbers are one of two.
+    // Rationals are two numbers.
     double ratioOf(const Table& table, int tag) const {
         const auto found = table.find(tag);
         if (found == table.end() || found->second.type != kRatio || found->second.count < 1)
@@ -203,7 +200,7 @@ class Walk {
         return below > 0 ? double(number(bytes, 0, 4)) / below : 0;
     }
 
-    // Keeps what the first page says of all.
+    // Keeps the first page's metadata, which describes all pages.
     void describe(const Table& table) {
         const auto text = table.find(kDescription);
         if (text != table.end() && text->second.type == kText && text->second.count <= kMostText) {
@@ -217,7 +214,7 @@ class Walk {
         if (planes != table.end()) pages_.metaMorphPlanes = planes->second.count;
     }
 
-    // Whether pixels lie in the file as they would in memory.
+    // Finds pixels that are stored as in memory.
     void findPixels(const Table& table, TiffPage& page) const {
         const std::vector<std::uint64_t> bits = valuesOf(table, kBits);
         const bool isWhole = !bits.empty() && bits[0] % 8 == 0 && bits[0] > 0 &&
@@ -241,11 +238,11 @@ class Walk {
             valueOf(table, kWidth, 0) * valueOf(table, kHeight, 0) * samples * (bits[0] / 8);
     }
 
-    // Strips are tiles as wide as the page.
+    // Checks strips or tiles; strips count as tiles of full width.
     void requirePixels(const Table& table) const {
         const std::uint64_t width = lengthOf(table, kWidth, "a width");
         const std::uint64_t height = lengthOf(table, kHeight, "a height");
-        // OpenImageIO would read the first of them.
+        // OpenImageIO would only read the first slice.
         if (const std::uint64_t depth = valueOf(table, kDepth, 1); depth > 1)
             refuse(page() + " of " + std::to_string(depth) + " slices (ImageDepth)",
                    "a page for each slice");
@@ -267,7 +264,7 @@ class Walk {
                 "enough for " + std::to_string(width) + "x" + std::to_string(height));
         }
 
-        // Only what is not packed has a length that is known, subsampled colours aside.
+        // Only unpacked data without subsampled colours have a known length.
         const bool plain = valueOf(table, kCompression, kUnpacked) == kUnpacked &&
                            valueOf(table, kPhotometric, kBlackIsZero) != kYcbcr;
         const double rowBits =
@@ -296,7 +293,7 @@ class Walk {
         if (tiles) requireClaimedMemory(where_, mostBytes);
     }
 
-    // libtiff works out the lengths where a page does not say them.
+    // If the length is missing, libtiff works it out.
     void requirePart(const char* what, std::uint64_t place, std::optional<std::uint64_t> length,
                      double least) const {
         least = std::min(std::max(least, 1.0), 0x1p62);

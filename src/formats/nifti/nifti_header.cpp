@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: nifti1.h, NIfTI-1 Data Format, of the NIfTI Data Format Working Group (2003): 348 bytes
-// of fixed fields and 4 that say that no extensions follow. World space is RAS. The place of the
-// voxels is given twice: by the matrix (sform), and, where it has no shear, by a quaternion
-// (qform).
+// of fields, then 4 for "no extensions". World space is RAS. The placement is written twice: as a
+// matrix (sform), and without shear as a quaternion (qform).
 #include <algorithm>
 #include <cstring>
 #include <glm/gtc/quaternion.hpp>
@@ -75,7 +74,7 @@ void setQuaternion(const DenseLayout& layout, Fields& fields) {
     const bool mirrored = glm::determinant(rotation) < 0;
     if (mirrored) rotation[2] = -rotation[2];
     glm::dquat turn = glm::normalize(glm::quat_cast(rotation));
-    // The real part is not stored: it is the one that is not negative.
+    // The real part is not stored; readers take it as not negative.
     if (turn.w < 0) turn = -turn;
     const glm::dvec3 origin = layout.origin();
     fields.set(252, kScannerCoordinates);
@@ -125,7 +124,7 @@ std::string niftiHeader(const DenseLayout& layout, const std::string&) {
     const glm::dvec3 spacing = layout.spacing();
     Fields fields;
     fields.set(0, std::int32_t(kHeaderBytes));
-    fields.setText(38, "r");  // what older readers look for
+    fields.setText(38, "r");  // older readers expect it
     std::size_t place = 40;
     for (const int dim : {3, layout.dims.x, layout.dims.y, layout.dims.z, 1, 1, 1, 1}) {
         fields.set(place, std::int16_t(dim));
@@ -136,8 +135,7 @@ std::string niftiHeader(const DenseLayout& layout, const std::string&) {
     fields.set(70, dataType(layout.type));
     fields.set(72, std::int16_t(8 * rawTypeBytes(layout.type)));
     fields.setFloats(76, {1, spacing.x, spacing.y, spacing.z, 1, 1, 1, 1});
-    fields.setFloats(108,
-                     {double(kDataStart), 1, 0});  // values are as stored: slope 1, intercept 0
+    fields.setFloats(108, {double(kDataStart), 1, 0});  // slope 1, intercept 0
     constexpr auto kMillimetres = std::uint8_t(2);
     if (!layout.lengthUnit.empty()) fields.set(123, kMillimetres);
     fields.setText(148, "deltasplat " DELTASPLAT_VERSION);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: NIfTI-1 (nifti1.h, 2003) and NIfTI-2 (nifti2.h, 2011) of the NIfTI Data Format Working
-// Group: both headers are one fixed struct, in the byte order of whoever wrote it. ITK knows only
-// NIfTI-1; docs/decisions.md says what else kept it out of here.
+// Based on: NIfTI-1 (nifti1.h, 2003) and NIfTI-2 (nifti2.h, 2011), NIfTI Data Format Working Group:
+// one struct in the writer's byte order. ITK knows only NIfTI-1; see also docs/decisions.md.
 #include "formats/nifti/read_nifti.h"
 
 #include <algorithm>
@@ -33,7 +32,7 @@ namespace {
 constexpr std::size_t kBytes1 = 348;
 constexpr std::size_t kBytes2 = 540;
 
-// Where the fields that matter lie in the header of one version.
+// Offsets of the used fields in one version's header.
 struct Places {
     std::size_t magic, dataType, dims, pixelSizes, dataStart, slope, intercept, qformCode,
         sformCode, quaternion, sform, units, intentCode;
@@ -44,7 +43,7 @@ constexpr Places kPlaces2{4, 12, 16, 104, 168, 176, 184, 344, 348, 352, 400, 500
 struct TypeInfo {
     int code;
     std::optional<RawType> type;
-    const char* name;  // of what cannot be read
+    const char* name;  // of types that cannot be read
 };
 constexpr std::array<TypeInfo, 17> kTypes{{{2, RawType::kUint8, ""},
                                            {4, RawType::kInt16, ""},
@@ -64,14 +63,13 @@ constexpr std::array<TypeInfo, 17> kTypes{{{2, RawType::kUint8, ""},
                                            {2048, {}, "complex256"},
                                            {2304, {}, "RGBA"}}};
 
-// Whether a file has an extension, ".gz" behind it or not.
+// Whether a file has an extension, with or without ".gz".
 bool isExtension(const std::filesystem::path& file, const std::string& extension) {
     const std::string own = lowerExtension(file);
     return own == extension || own == extension + ".gz";
 }
 
-// Returns the file beside another that has the same name and another extension; empty if there is
-// none.
+// Returns an existing file with the same name and another extension, or an empty path.
 std::filesystem::path partnerOf(const std::filesystem::path& file, const std::string& extension) {
     const std::string stem = nameWithoutExtensions(file);
     std::string upper = extension;
@@ -85,14 +83,13 @@ std::filesystem::path partnerOf(const std::filesystem::path& file, const std::st
     return {};
 }
 
-// The header's bytes, read by the file's version and byte order.
 class Fields {
   public:
     std::string where;
     std::array<std::byte, kBytes2> bytes{};
     bool second = false;
     bool bigEndian = false;
-    bool pair = false;  // whether the values are in a file of their own
+    bool pair = false;  // whether the values are in a separate file
 
     const Places& places() const { return second ? kPlaces2 : kPlaces1; }
     template <typename T>
@@ -106,7 +103,7 @@ class Fields {
         const std::size_t place = places().dims;
         return second ? at<std::int64_t>(place + 8 * i) : at<std::int16_t>(place + 2 * i);
     }
-    // An axis of no voxels is one that does not count.
+    // Treats an axis of size 0 as unused.
     std::int64_t count(std::size_t axis) const { return dim(axis) == 0 ? 1 : dim(axis); }
     double real(std::size_t place, std::size_t i = 0) const {
         return second ? at<double>(place + 8 * i) : double(at<float>(place + 4 * i));
@@ -119,7 +116,7 @@ class Fields {
     }
 };
 
-// The first number is the header's size: it tells version and byte order at once.
+// The first number, the header's size, reveals version and byte order.
 Fields readFields(const std::filesystem::path& file) {
     Fields fields;
     fields.where = file.string();
@@ -174,7 +171,7 @@ glm::i64vec3 readDims(const Fields& fields) {
     return dims;
 }
 
-// The axes beyond the third, time and the parts of vectors, count volumes.
+// Axes beyond the third (time, vector components) count volumes.
 double countVolumes(const Fields& fields) {
     double volumes = 1;
     for (std::int64_t i = 4; i <= fields.dim(0); ++i)
@@ -194,7 +191,7 @@ RawType readType(const Fields& fields) {
 
 std::uint64_t readDataStart(const Fields& fields) {
     const std::size_t place = fields.places().dataStart;
-    // Four bytes behind the header say whether there are extensions.
+    // Four bytes after the header announce extensions.
     const double least = double(fields.second ? kBytes2 : kBytes1) + 4;
     const double start =
         fields.second ? double(fields.at<std::int64_t>(place)) : fields.real(place);
@@ -233,8 +230,7 @@ glm::dmat4 sform(const Fields& fields) {
     return matrix;
 }
 
-// A size of 0 is none: the voxel is one unit long. A negative one has no meaning: quaternions and
-// matrices alone mirror.
+// A size of 0 is unset and counts as 1. A negative one has no meaning: only forms mirror.
 double voxelSize(const Fields& fields, int axis) {
     const double size = fields.real(fields.places().pixelSizes, std::size_t(axis) + 1);
     return size == 0 ? 1 : std::abs(size);
@@ -246,8 +242,7 @@ bool hasNegativeSize(const Fields& fields) {
     return false;
 }
 
-// Method 2 of nifti1.h: a unit quaternion whose real part is left out, then voxel sizes; the sign
-// of the third axis is that of pixdim[0].
+// Method 2 of nifti1.h: a unit quaternion without real part, voxel sizes, third sign in pixdim[0].
 glm::dmat4 qform(const Fields& fields) {
     const std::size_t place = fields.places().quaternion;
     double b = fields.real(place, 0), c = fields.real(place, 1), d = fields.real(place, 2);
@@ -268,18 +263,18 @@ glm::dmat4 qform(const Fields& fields) {
             glm::dvec4(z * handed * voxelSize(fields, 2), 0), glm::dvec4(origin, 1)};
 }
 
-// Method 1: sizes alone.
+// Method 1: only sizes.
 glm::dmat4 scaling(const Fields& fields) {
     glm::dmat4 matrix(1);
     for (int axis = 0; axis < 3; ++axis) {
-        // Files of only one or two dimensions leave the others 0, or anything.
+        // In files of one or two dimensions the other sizes may be anything.
         if (axis < fields.dim(0) || std::isfinite(voxelSize(fields, axis)))
             matrix[axis][axis] = voxelSize(fields, axis);
     }
     return matrix;
 }
 
-// The farthest that a corner of the volume moves from one matrix to the other, in voxels.
+// Returns the farthest movement of a corner between two matrices, in voxels.
 double distance(const glm::dmat4& a, const glm::dmat4& b, const glm::i64vec3& dims) {
     double farthest = 0;
     for (int corner = 0; corner < 8; ++corner) {
@@ -291,8 +286,7 @@ double distance(const glm::dmat4& a, const glm::dmat4& b, const glm::i64vec3& di
     return farthest / portable::pow(std::abs(glm::determinant(glm::dmat3(a))), 1 / 3.0);
 }
 
-// Gives voxels their places: by the sform, else by the qform, else by their sizes alone, each where
-// it gives every voxel one of its own.
+// Places voxels by the sform, else the qform, else sizes. Skips forms without distinct places.
 void place(const Fields& fields, const Listener& listener, NiftiHeader& header) {
     const bool hasSform = fields.code(fields.places().sformCode) > 0;
     const bool hasQform = fields.code(fields.places().qformCode) > 0;
@@ -324,7 +318,7 @@ void place(const Fields& fields, const Listener& listener, NiftiHeader& header) 
     }
 }
 
-// A patient's space is in millimetres.
+// Converts a patient's space to millimetres.
 void readUnit(const Fields& fields, const Listener& listener, NiftiHeader& header) {
     constexpr std::array<const char*, 4> kUnits{"", "m", "mm", "um"};
     const auto code = std::size_t(
@@ -339,7 +333,7 @@ void readUnit(const Fields& fields, const Listener& listener, NiftiHeader& heade
     requirePlacement(fields.where, "lengths in millimetres", header.worldFromIndex);
 }
 
-// A slope of 0 means that there is none; so do NaN and infinity, which some programs write.
+// A slope of 0 means no rescale; so do NaN and infinity, which some programs write.
 void readRescale(const Fields& fields, NiftiHeader& header) {
     const double slope = fields.real(fields.places().slope);
     const double intercept = fields.real(fields.places().intercept);
@@ -405,7 +399,7 @@ DenseSource openNifti(const std::filesystem::path& path, const InputKind&,
     return rescaled(std::move(source), header.rescale);
 }
 
-// The two files of a NIfTI pair, that which was named first.
+// Returns the files of a NIfTI pair, `input` first.
 std::vector<std::filesystem::path> withPartner(const std::filesystem::path& input) {
     std::vector<std::filesystem::path> files{input};
     for (const std::filesystem::path& file : niftiFiles(input))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: numpy.lib.format, "NPY format" (numpy.org/doc), versions 1.0 to 3.0: a text in Python's
-// notation behind eight bytes and its length. Version 1.0 is written.
+// Based on: numpy.lib.format, "NPY format" (numpy.org/doc), versions 1.0 to 3.0: eight bytes, a
+// length, and a Python literal. Version 1.0 is written.
 #include <algorithm>
 #include <bit>
 #include <charconv>
@@ -27,11 +27,11 @@ namespace deltasplat {
 
 namespace {
 
-// What the header of a NumPy array file says, checked.
+// The checked header of a NumPy file.
 struct NpyHeader {
-    RawLayout layout;          // of one volume, behind skipBytes; halves are uint16
+    RawLayout layout;          // one volume, after skipBytes; halves are uint16
     bool half = false;         // the values are halves
-    std::int64_t volumes = 1;  // the product of all axes but the three that count fastest
+    std::int64_t volumes = 1;  // product of all axes but the three fastest
     std::string shape;         // for messages: "(5, 64, 64, 36)"
 };
 
@@ -41,12 +41,12 @@ struct Fields {
     std::optional<std::vector<std::int64_t>> shape;
 };
 
-// Takes a text such as {'descr': '<f4', 'fortran_order': False, 'shape': (3, 4, 5), } apart.
+// Parses a text such as {'descr': '<f4', 'fortran_order': False, 'shape': (3, 4, 5), }.
 class Parser {
   public:
     explicit Parser(const std::string& text) : text_(text) {}
 
-    /// Returns nothing if the text is of no such form.
+    /// Returns nothing for other text.
     std::optional<Fields> run() {
         Fields fields;
         if (!take("{")) return {};
@@ -66,7 +66,7 @@ class Parser {
             if (!take(",") && !ahead("}")) return {};
         }
         const bool whole = fields.type && fields.fortranOrder && fields.shape;
-        // Blanks fill up the place that is left.
+        // Blanks pad the header.
         const bool ended = text_.find_first_not_of(" \t\r\n", at_) == std::string::npos;
         return whole && ended ? std::optional(fields) : std::nullopt;
     }
@@ -101,7 +101,7 @@ class Parser {
             if (result.ec != std::errc{}) return {};
             at_ = std::size_t(result.ptr - text_.data());
             values.push_back(value);
-            take("L");  // as Python 2 wrote it
+            take("L");  // Python 2's suffix
             if (!take(",") && !ahead(")")) return {};
         }
         return values;
@@ -111,7 +111,7 @@ class Parser {
     std::size_t at_ = 0;
 };
 
-// Returns the text of the header, and where the values begin.
+// Returns the header's text and the offset of the values.
 std::pair<std::string, std::uint64_t> readText(const std::filesystem::path& file) {
     constexpr std::size_t kMost = std::size_t{1} << 20;
     ByteSource bytes(file, packingOf(file));
@@ -172,7 +172,7 @@ void setShape(const std::filesystem::path& file, const Fields& fields, NpyHeader
     if (bytes > 0x1p62) {
         refuseFile(file, "shape " + header.shape, "at most 4611686018427387904 bytes");
     }
-    // From the axis that counts fastest, x, on.
+    // From the fastest axis, x, to the slowest.
     if (!*fields.fortranOrder) std::reverse(axes.begin(), axes.end());
     for (std::size_t i = 0; i < axes.size(); ++i) {
         if (i < 3) {
@@ -183,7 +183,6 @@ void setShape(const std::filesystem::path& file, const Fields& fields, NpyHeader
     }
 }
 
-// Reads and checks the header.
 NpyHeader readHeader(const std::filesystem::path& file) {
     const auto [text, start] = readText(file);
     const std::optional<Fields> fields = Parser(text).run();
@@ -211,7 +210,6 @@ float floatOfHalf(std::uint16_t bits) {
     return (bits & 0x8000) != 0 ? -size : size;
 }
 
-// Values that are stored as halves, as floats.
 DenseSource fromHalves(DenseSource source) {
     DenseSource result = source;
     result.type = RawType::kFloat32;
@@ -252,7 +250,7 @@ DenseSource openNpy(const std::filesystem::path& path, const InputKind&, const R
     return header.half ? fromHalves(std::move(source)) : source;
 }
 
-// NumPy's letters for the kinds of numbers, and their bytes.
+// NumPy's letter for the kind of number, with its bytes.
 std::string typeText(RawType type) {
     const int bytes = rawTypeBytes(type);
     const std::string name = rawTypeName(type);
@@ -260,7 +258,7 @@ std::string typeText(RawType type) {
     return order + name.substr(0, 1) + std::to_string(bytes);
 }
 
-// An array a[z][y][x]: the last index counts fastest.
+// Declares an array a[z][y][x]; the last index is the fastest.
 std::string npyHeader(const DenseLayout& layout, const std::string&) {
     constexpr std::size_t kUnit = 64, kStart = 10;
     std::string text = "{'descr': '" + typeText(layout.type) +

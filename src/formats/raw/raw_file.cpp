@@ -26,7 +26,7 @@ std::string noHeader(const DenseLayout&, const std::string&) {
     return {};
 }
 
-// Whether the file's name says so: "head_uint16be.raw".
+// Whether the file's name says big endian: "head_uint16be.raw".
 bool namesBigEndian(const std::string& file, const DenseLayout& layout) {
     RawFormat format;
     format.dims = glm::i64vec3(layout.dims);
@@ -34,11 +34,11 @@ bool namesBigEndian(const std::string& file, const DenseLayout& layout) {
     try {
         return resolveRawLayout(file, format).bigEndian;
     } catch (const Error&) {
-        return false;  // 64-bit integers, which raw files are not read as
+        return false;  // 64-bit integers, which raw files cannot declare
     }
 }
 
-// A file without a header: what its name does not say, the options have to when it is read.
+// Without a header, options have to give what the name does not.
 void settleRaw(DenseLayout& layout, const std::string& file, WriteNotes& notes) {
     std::string options;
     const bool ordered = rawTypeBytes(layout.type) > 1;
@@ -70,8 +70,8 @@ std::string expectedSize(const RawFile& file) {
 
 enum class PackedEnd { kIsChecked, kIsKnown };
 
-// What follows the last voxel says that the dims are wrong: count it for the message. A gzip stream
-// is known to be sound only at its end.
+// Checks what follows the volume. Excess bytes mean wrong dims; their count is for the message. A
+// gzip stream proves to be sound only at its end.
 void requireEnd(const RawFile& file, ByteSource& source, std::uint64_t done,
                 const std::function<void()>& beat) {
     constexpr std::uint64_t kMostTail = std::uint64_t{1} << 24;
@@ -82,11 +82,10 @@ void requireEnd(const RawFile& file, ByteSource& source, std::uint64_t done,
     if (more != 0 && !file.mayGoOn) throwSize(file, done + later + more);
 }
 
-// @param bytes  of the file
-// @param step   slices at a time
+// @param step  slices at a time
 void readLayers(const RawFile& file, const std::shared_ptr<const FileBytes>& bytes, int step,
                 PackedEnd end, const DenseSource::LayerUse& use, const Listener& listener) {
-    // What lies before the volume is passed over, where it is not packed without being read.
+    // Skips to the volume; packed bytes before it have to be unpacked.
     ByteSource source(bytes, file.isPacked() ? file.packedStart : file.start(), file.packing);
     const auto beat = [&](double share) { return [&listener, share] { listener.report(share); }; };
     std::uint64_t done = file.isPacked() ? source.skip(file.start(), beat(0)) : file.start();
@@ -105,7 +104,7 @@ void readLayers(const RawFile& file, const std::shared_ptr<const FileBytes>& byt
         use(first, count, layer.get());
         listener.report(double(first + count) / slices);
     }
-    // The size of a plain file has been looked at.
+    // A plain file's size is already checked.
     const bool known = file.isPacked() ? end == PackedEnd::kIsKnown : file.volumes > 1;
     if (!known) requireEnd(file, source, done, beat(1));
 }
@@ -138,7 +137,7 @@ void requireRawSize(const RawFile& file) {
         if (held < wanted || (held > wanted && !file.mayGoOn)) throwSize(file, held);
         return;
     }
-    // Deflate makes at most 1032 bytes of one. What more is claimed is a lie, not a need of memory.
+    // Deflate expands at most 1032 times. A larger claim is false, not a need for memory.
     constexpr double kMostRatio = 1032;
     if (double(held) * kMostRatio < double(wanted)) {
         throwSize(file, std::to_string(held) + " bytes of gzip");
@@ -175,8 +174,8 @@ DenseSource openRaw(const std::filesystem::path& path, const InputKind&, const R
     const RawFormat& format = options.raw;
     RawFile file{path, resolveRawLayout(path, format)};
     requireRegularFile(path);
-    // What it begins with tells, but that values may begin as gzip does, and a packed file be cut
-    // or damaged: then name and size do.
+    // The first bytes show gzip. Raw values may begin alike, and a packed file may be damaged, so
+    // name and size decide where they agree.
     const bool named = lowerExtension(path) == ".raw.gz";
     const std::uint64_t plain = file.layout.skipBytes + file.layout.dataBytes();
     const bool fits = std::filesystem::file_size(path) == plain;

@@ -32,14 +32,14 @@ constexpr std::array<TypeInfo, 10> kTypes{{{RawType::kUint8, "uint8", 1},
                                            {RawType::kFloat64, "float64", 8},
                                            {RawType::kUint64, "uint64", 8},
                                            {RawType::kInt64, "int64", 8}}};
-// The others are not for .raw files.
+// The remaining types are not allowed in .raw files.
 constexpr std::size_t kRawNames = 8;
 
 constexpr const char* kKnownTypes =
     "one of uint8, int8, uint16, int16, uint32, int32, float32, float64";
 constexpr std::int64_t kMaxDim = std::int64_t{1} << 30;
 
-// What a name such as engine_256x256x128_uint8be.raw says; empty text where it says nothing.
+// Parts of a name such as engine_256x256x128_uint8be.raw; empty text if absent.
 struct NameParts {
     std::array<std::string, 3> dims;
     std::string type;
@@ -61,7 +61,7 @@ bool isLetterOrDigit(char c) {
     return isDigit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
-// Takes a text such as 256x256x128 apart.
+// Parses a text such as 256x256x128.
 std::optional<std::array<std::string, 3>> dimsIn(const std::string& text) {
     std::array<std::string, 3> dims;
     std::size_t axis = 0;
@@ -96,7 +96,7 @@ NameParts parseName(const std::filesystem::path& file) {
     parts.dims = *dims;
     parts.type = type;
 
-    // "uint16be" is a known type with a byte order behind it.
+    // "uint16be" is a type followed by a byte order.
     const std::size_t size = parts.type.size();
     const std::string order = size > 2 ? parts.type.substr(size - 2) : "";
     if ((order == "be" || order == "le") && findType(parts.type.substr(0, size - 2))) {
@@ -150,7 +150,7 @@ const TypeInfo& resolveType(const std::filesystem::path& file, const RawFormat& 
     return *info;
 }
 
-// Each dim is at most 2^30, so only the products can leave 63 bits.
+// Each dim is at most 2^30, so only products can exceed 63 bits.
 void checkSize(const std::string& where, const RawLayout& layout) {
     const std::int64_t limit = std::numeric_limits<std::int64_t>::max();
     const std::int64_t slice = layout.dims.x * layout.dims.y;
@@ -210,7 +210,7 @@ bool saysLayout(const std::filesystem::path& file, const RawLayout& layout) {
     try {
         said = resolveRawLayout(file, {});
     } catch (const Error&) {
-        return false;  // the name says nothing that a reader would take
+        return false;  // the name says nothing useful
     }
     const auto text = [](const RawLayout& one) {
         const bool ordered = rawTypeBytes(one.type) > 1 && one.bigEndian;

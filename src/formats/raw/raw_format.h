@@ -14,8 +14,7 @@
 
 namespace deltasplat {
 
-/// The types of values in files without empty places. Those of 64 whole bits come only from files
-/// that name their type themselves, and not from .raw files.
+/// Value types without empty places. 64-bit integers need a file that names its type, unlike .raw.
 enum class RawType {
     kUint8,
     kInt8,
@@ -31,10 +30,9 @@ enum class RawType {
 
 /// Returns "uint8", ..., "float64".
 const char* rawTypeName(RawType type);
-/// Returns 1, 2, 4 or 8.
 int rawTypeBytes(RawType type);
 
-/// What the bytes of a raw file are, complete and checked.
+/// The complete, checked layout of a raw file's bytes.
 struct RawLayout {
     glm::i64vec3 dims{1};  ///< each 1..2^30; the product of dims and bytes fits into 63 bits
     RawType type = RawType::kUint8;
@@ -43,20 +41,18 @@ struct RawLayout {
 
     std::uint64_t voxels() const { return std::uint64_t(dims.x * dims.y * dims.z); }
     std::uint64_t dataBytes() const { return voxels() * std::uint64_t(rawTypeBytes(type)); }
-    /// Returns what a file of this layout must hold, for example "8388608 (256x256x128 uint8)".
+    /// Returns the bytes that a file must hold, for example "8388608 (256x256x128 uint8)".
     std::string expectedSize() const;
 };
 
-/// @throw Error(kUsage) if the spacing or the origin is one that no file could hold: a reader would
-///        refuse it
+/// @throw Error(kUsage) if spacing or origin is out of the range that readers accept in files
 void requireGeometry(const RawFormat& format);
 
-/// Completes `format` from the name of `file`; what the options say wins over the name.
+/// Completes `format` from the file's name; options override the name.
 /// @throw Error(kUsage) if dims or type are missing, unknown or out of range
 RawLayout resolveRawLayout(const std::filesystem::path& file, const RawFormat& format);
 
-/// Returns whether the name of a file to be written says its layout; false if it says nothing that
-/// a reader would take.
+/// Returns whether the name of an output gives its layout; false if a reader would find none in it.
 /// @throw Error(kUsage) "<file>: got a name that says 4x4x4 uint8; expected 4x4x8 uint8"
 bool saysLayout(const std::filesystem::path& file, const RawLayout& layout);
 
@@ -66,14 +62,14 @@ using BitsOf = std::conditional_t<
     std::conditional_t<kBytes == 2, std::uint16_t,
                        std::conditional_t<kBytes == 4, std::uint32_t, std::uint64_t>>>;
 
-/// Returns the value whose bytes are at `from`, turned round if `swap`.
+/// Returns the value whose bytes are at `from`, reversed if `swap`.
 template <typename T>
 inline T loadValue(const std::byte* from, bool swap) {
     using Bits = BitsOf<sizeof(T)>;
     Bits bits;
     std::memcpy(&bits, from, sizeof(T));
     if (swap) {
-        // Compilers know this loop as one instruction.
+        // Compilers turn this loop into one instruction.
         Bits turned = 0;
         for (std::size_t i = 0; i < sizeof(T); ++i) {
             turned = Bits(turned | Bits(bits >> (8 * i) & 0xff) << (8 * (sizeof(T) - 1 - i)));
@@ -83,7 +79,7 @@ inline T loadValue(const std::byte* from, bool swap) {
     return std::bit_cast<T>(bits);
 }
 
-/// Whether bytes of this order are not in the processor's.
+/// Whether bytes of this order differ from the processor's.
 constexpr bool mustSwap(bool bigEndian) {
     return bigEndian != (std::endian::native == std::endian::big);
 }

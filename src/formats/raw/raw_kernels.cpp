@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inner loop of reading small whole numbers, compiled once for each SIMD level.
+// Inner loop for reading small integers, compiled once per SIMD level.
 #include "formats/raw/raw_kernels.h"
 
 #include <cstddef>
@@ -19,12 +19,11 @@ HWY_BEFORE_NAMESPACE();
 namespace deltasplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Eight numbers as 16 bits each.
 template <typename T>
 HWY_INLINE hn::Vec<EightShorts> loadEight(const std::byte* row) {
     const EightShorts tag;
     if constexpr (sizeof(T) == 2) {
-        // They may lie anywhere.
+        // The row may be unaligned.
         const hn::Repartition<std::uint8_t, EightShorts> bytes;
         return hn::BitCast(tag, hn::LoadU(bytes, reinterpret_cast<const std::uint8_t*>(row)));
     } else {
@@ -60,7 +59,7 @@ void encodeWholeBlockKernel(const RawBlock& block, RawType type, Code offset, Co
         case RawType::kInt8:
             return encode<std::int8_t>(block, offset, codes);
         default:
-            // Signed ones have the same bits.
+            // Signed numbers have the same bits.
             return encode<std::uint16_t>(block, offset, codes);
     }
 }

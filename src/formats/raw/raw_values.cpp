@@ -50,7 +50,6 @@ RawScan scanRun(const std::byte* bytes, std::size_t count, bool swap, bool disti
     return scan;
 }
 
-// Replaces what is no finite number.
 template <typename T>
 double finiteOr(T value, double replacement) {
     const auto number = double(value);
@@ -58,7 +57,7 @@ double finiteOr(T value, double replacement) {
     return number;
 }
 
-// One code of a value whose book counts whole numbers: the low 16 bits say it all.
+// The code of an integer book: the low 16 bits suffice.
 template <typename T>
 struct IntegerCoder {
     Code offset;
@@ -130,7 +129,7 @@ void encode(const RawBlock& block, const RawCoding& coding, Code* codes) {
         if constexpr (std::is_same_v<Coder<T>, IntegerCoder<T>> && sizeof(T) <= 2 && !kSwap) {
             encodeWholeBlock(block, coding.type, coder.offset, codes);
         } else {
-            // Loops of known length let the compiler unroll.
+            // Constant loop lengths let the compiler unroll.
             encodeBox<T, kSwap>(block, {8, 8, 8}, coder, codes);
         }
     } else {

@@ -20,7 +20,7 @@ struct Type {
     std::string_view name;
     RawType type;
 };
-// MET_LONG has 4 bytes, on every system.
+// MET_LONG has 4 bytes on every system.
 constexpr std::array<Type, 12> kTypes{{{"MET_UCHAR", RawType::kUint8},
                                        {"MET_CHAR", RawType::kInt8},
                                        {"MET_USHORT", RawType::kUint16},
@@ -66,7 +66,7 @@ class MetaReader {
         return wholeField(header_, field, missing, volume_.header);
     }
 
-    // The first of several fields that mean the same.
+    // Returns the first of several synonymous fields.
     const std::string* findOne(std::initializer_list<const char*> fields) const {
         for (const char* const field : fields) {
             if (const std::string* const value = find(field)) return value;
@@ -90,7 +90,7 @@ class MetaReader {
         }
     }
 
-    // The first three axes that are longer than a voxel are those of space; others count volumes.
+    // The first three axes longer than one voxel are spatial; the others count volumes.
     void takeVolumes(std::vector<std::size_t>& axes) {
         const auto isLong = [&](std::size_t axis) { return volume_.sizes[axis] > 1; };
         if (std::ranges::count_if(axes, isLong) <= 3) return;
@@ -145,7 +145,7 @@ class MetaReader {
         if (skipped > 0) volume_.dataStart += std::uint64_t(skipped);
     }
 
-    // Numbers of a field, as many as `count`; empty if there is no such field.
+    // Returns a field's `count` numbers; none if no such field exists.
     std::vector<double> numbersOf(std::initializer_list<const char*> fields, std::size_t count) {
         const std::string* const text = findOne(fields);
         if (text == nullptr) return {};
@@ -177,9 +177,8 @@ class MetaReader {
             setUnits({*unit}, listener_, volume_);
     }
 
-    // Programs write an orientation wherever world space is a patient's, which is LPS then, and do
-    // not heed it: "RAI" are the sides from which the axes come. What says another thing than the
-    // matrix is not believed, and told.
+    // AnatomicalOrientation, such as "RAI", names the sides where axes start. Programs write it if
+    // world space is a patient's (LPS), but ignore it. The matrix wins over it, with a warning.
     void readSpace() {
         const std::string* const text = find("anatomicalorientation");
         if (text == nullptr || text->size() != 3) return;
@@ -213,7 +212,7 @@ class MetaReader {
         const double slope = number({"elementtointensityfunctionslope", "rescaleslope"}, 1);
         const double offset =
             number({"elementtointensityfunctionoffset", "rescaleintercept", "rescaleoffset"}, 0);
-        // A slope of 0 means that there is none, as in NIfTI.
+        // A slope of 0 means no rescale, as in NIfTI.
         if (slope == 0 || !std::isfinite(slope) || !std::isfinite(offset)) return;
         volume_.rescale = {slope, offset};
     }
@@ -229,9 +228,8 @@ TextVolume readMetaVolume(const std::filesystem::path& file, const Listener& lis
     return MetaReader(file, listener).read();
 }
 
-// Based on: MetaIO's "MetaImage" tag reference (itk.org/Wiki/ITK/MetaIO/Documentation). World space
-// is LPS, as in ITK and in what is built on it; AnatomicalOrientation, which ITK always writes,
-// tells that it is a patient's.
+// Based on: MetaIO's "MetaImage" tag reference, as above. World space is LPS, as in ITK and
+// programs based on it. AnatomicalOrientation, which ITK always writes, marks a patient's space.
 namespace {
 
 std::string typeText(RawType type) {
@@ -260,14 +258,13 @@ std::string typeText(RawType type) {
     return "MET_DOUBLE";
 }
 
-// Returns the sides from which the axes come, as ITK writes them: "RAI" where they run along world
-// x, y and z of LPS space.
+// Returns the sides where axes start, as ITK spells them: "RAI" along x, y and z of LPS.
 std::string orientationText(const glm::dmat3& directions) {
     constexpr const char* kFrom[3] = {"RL", "AP", "IS"};
     std::string text = "???";
     glm::dmat3 left = directions;
     for (int step = 0; step < 3; ++step) {
-        // The axis that is nearest to a world axis, of those that are left, is told first.
+        // Names the remaining axis that is closest to a world axis first.
         int axis = 0, world = 0;
         for (int i = 0; i < 9; ++i) {
             if (std::abs(left[i / 3][i % 3]) > std::abs(left[axis][world])) {
@@ -289,7 +286,7 @@ std::string vectorText(const glm::dvec3& v) {
 
 void settleMetaImage(DenseLayout& layout, const std::string&, WriteNotes& notes) {
     layout.turnTo("LPS");
-    // ITK takes places for millimetres, and scales sizes alone where the header has another unit.
+    // ITK takes positions for millimetres, and scales only sizes if the header has another unit.
     layout.turnToMillimetres();
     layout.noteLabels("MetaImage", false, notes);
     if (!layout.isOrthogonal()) {
@@ -315,7 +312,7 @@ std::string metaImageHeader(const DenseLayout& layout, const std::string& dataFi
     text += "DimSize = " + std::to_string(layout.dims.x) + " " + std::to_string(layout.dims.y) +
             " " + std::to_string(layout.dims.z) + "\n";
     text += "ElementType = " + typeText(layout.type) + "\n";
-    // As ITK keeps the intent of a NIfTI file.
+    // ITK's key for the intent of a NIfTI file.
     if (layout.labels) text += "intent_code = 1002\n";
     return text + "ElementDataFile = " + (dataFile.empty() ? "LOCAL" : dataFile) + "\n";
 }

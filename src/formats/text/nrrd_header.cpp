@@ -47,7 +47,7 @@ std::string extentText(const glm::ivec3& dims) {
     return text;
 }
 
-// Segments as 3D Slicer has them in a .seg.nrrd; labels without names as ITK keeps NIfTI's intent.
+// Writes segments like 3D Slicer's .seg.nrrd; nameless labels like ITK's copy of NIfTI's intent.
 std::string labelLines(const DenseLayout& layout) {
     const std::vector<LabelEntry>& entries = layout.labels->entries;
     if (entries.empty()) return "intent_code:=1002\n";
@@ -79,7 +79,7 @@ std::string typeText(RawType type) {
 
 }  // namespace
 
-// NRRD holds everything that a layout has.
+// NRRD holds all properties of a layout.
 void settleNrrd(DenseLayout&, const std::string&, WriteNotes&) {}
 
 std::string nrrdHeader(const DenseLayout& layout, const std::string& dataFile) {
@@ -98,17 +98,17 @@ std::string nrrdHeader(const DenseLayout& layout, const std::string& dataFile) {
     text += "encoding: gzip\n";
     text += "space origin: " + vectorText(layout.origin()) + "\n";
     if (layout.labels) text += labelLines(layout);
-    // An empty line ends the header of a file that goes on with the values.
+    // An empty line ends the header before attached values.
     return text + (dataFile.empty() ? "\n" : "data file: " + dataFile + "\n");
 }
 
 // Based on: the documentation of 3D Slicer's .seg.nrrd.
 namespace {
 
-// What a header says of one segment: "Name", "LabelValue" and the like.
+// One segment's fields: "Name", "LabelValue" and so on.
 using SegmentFields = std::map<std::string, std::string>;
 
-// The fields of segments by their numbers: "Segment12_Name" of 12.
+// Groups fields by segment: "Segment12_Name" belongs to 12.
 std::map<std::int64_t, SegmentFields> segmentFields(const TextHeader& header) {
     constexpr std::string_view kPrefix = "Segment";
     std::map<std::int64_t, SegmentFields> segments;
@@ -150,7 +150,7 @@ std::optional<glm::dvec3> colorIn(const SegmentFields& fields) {
     return glm::dvec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
 }
 
-// Layers may have the same number for different labels: then each gets its own.
+// Layers may reuse a number for different labels; if so, every label gets a new number.
 void numberSegments(TextVolume& volume) {
     std::map<std::int64_t, std::int64_t> uses;
     bool alike = false;
@@ -167,7 +167,7 @@ void numberSegments(TextVolume& volume) {
 void readSegments(const TextHeader& header, TextVolume& volume) {
     const std::string* kept = header.findKey("Segmentation_SourceRepresentation");
     if (kept == nullptr) kept = header.findKey("Segmentation_MasterRepresentation");
-    // Shares of voxels are amounts.
+    // Fractions of voxels are amounts, not labels.
     if (kept != nullptr && lowerCase(*kept).starts_with("fractional")) return;
     const auto segments = segmentFields(header);
     const std::string* const intent = header.findKey("intent_code");

@@ -14,8 +14,7 @@
 namespace deltasplat {
 namespace {
 
-// What a space of the format is here: the space it becomes, and the world axis that is mirrored on
-// the way; -1 for none.
+// A space of the format, the space it becomes, and the world axis mirrored on the way; -1: none.
 struct Space {
     std::string_view name, shortName;
     int axes;
@@ -37,7 +36,7 @@ constexpr std::array<Space, 12> kSpaces{{{"right-anterior-superior", "RAS", 3, "
 
 struct Type {
     RawType type;
-    std::string_view names;  // each between commas
+    std::string_view names;  // separated by commas
 };
 constexpr std::array<Type, 10> kTypes{
     {{RawType::kUint8, ",uchar,unsigned char,uint8,uint8_t,"},
@@ -52,7 +51,6 @@ constexpr std::array<Type, 10> kTypes{
      {RawType::kFloat32, ",float,"},
      {RawType::kFloat64, ",double,"}}};
 
-// Reads the fields of one header.
 class NrrdReader {
   public:
     NrrdReader(const std::filesystem::path& file, const Listener& listener)
@@ -142,7 +140,7 @@ class NrrdReader {
         volume_.skipBytes = fromEnd ? 0 : std::uint64_t(bytes);
     }
 
-    // Lines are passed over before data are unpacked, and bytes afterwards.
+    // Lines are skipped before unpacking, bytes afterwards.
     void passLines(std::int64_t lines) {
         if (lines == 0) return;
         const bool whole = volume_.dataFile == volume_.header;
@@ -160,7 +158,7 @@ class NrrdReader {
         }
     }
 
-    // The kinds of axes, in lower case; empty where the header says nothing.
+    // Returns the axes' kinds in lower case; empty if not given.
     std::vector<std::string> kinds() const {
         std::vector<std::string> kinds(volume_.sizes.size());
         const std::string* const text = find("kinds");
@@ -170,7 +168,7 @@ class NrrdReader {
         return kinds;
     }
 
-    // Returns the axes of space. Another axis counts volumes if it lists them, or is time.
+    // Returns the spatial axes. Another one counts volumes: a list, time, or one without a place.
     std::vector<std::size_t> readAxes() {
         const std::vector<std::string> kind = kinds();
         const std::vector<std::optional<std::vector<double>>> vectors = directions();
@@ -198,8 +196,7 @@ class NrrdReader {
         return axes;
     }
 
-    // A vector "(1,0,0)" for each axis, or nothing of one that has no place ("none"). Empty if the
-    // header has no directions.
+    // Returns a vector per axis, or nothing for "none". Empty if the header has no directions.
     std::vector<std::optional<std::vector<double>>> directions() const {
         const std::string* const text = find("spacedirections");
         if (text == nullptr) return {};
@@ -213,7 +210,7 @@ class NrrdReader {
             const std::string word = text->substr(at, std::min(end, text->size()) - at);
             vectors.push_back(lowerCase(word) == "none" ? std::nullopt
                                                         : std::optional(vectorIn(word)));
-            // Where there is no place, some write numbers that are none.
+            // Some programs write NaN instead of "none".
             if (vectors.back() &&
                 std::ranges::any_of(*vectors.back(), [](double x) { return std::isnan(x); }))
                 vectors.back() = std::nullopt;
@@ -239,7 +236,6 @@ class NrrdReader {
         return *numbers;
     }
 
-    // The space that the header names; null if it names none.
     const Space* space() const {
         const std::string* const text = find("space");
         if (text == nullptr) return nullptr;
@@ -287,7 +283,7 @@ class NrrdReader {
 
     void mirror(const Space& space) {
         for (int column = 0; column < 4; ++column) {
-            // Adding 0 keeps -0, which is no other place, out of what is said.
+            // Adding 0 turns -0 into 0 for messages.
             double& number = volume_.worldFromIndex[column][space.mirrored];
             number = -number + 0.0;
         }
@@ -297,7 +293,7 @@ class NrrdReader {
                        " changes its sign");
     }
 
-    // What is no axis of the file goes along what is left of the world, a unit long.
+    // World directions without an axis get one of length 1.
     void placeByVectors(const std::vector<std::size_t>& axes,
                         const std::vector<std::optional<std::vector<double>>>& vectors) {
         const int rows = std::min(spaceAxes(), 3);
@@ -330,7 +326,7 @@ class NrrdReader {
             const glm::dvec3 normal = glm::cross(glm::dvec3(matrix[0]), glm::dvec3(matrix[1]));
             matrix[2] = glm::dvec4(glm::length(normal) > 0 ? glm::normalize(normal) : normal, 0);
         } else if (known == 1) {
-            // The world axes, beginning with the one that the direction is least along.
+            // World axes, starting with the one least aligned to x.
             const glm::dvec3 x = glm::normalize(glm::dvec3(matrix[0]));
             int least = 1;
             for (const int axis : {2, 0})
@@ -389,7 +385,7 @@ class NrrdReader {
         placeOrigin();
     }
 
-    // @param bySpace  whether there is a unit for each axis of space, or one for each of the file
+    // @param bySpace  whether units are listed per spatial axis or per axis of the file
     void readUnits(const std::vector<std::size_t>& axes, const std::string& field, bool bySpace) {
         const std::string* const text = find(field);
         if (text == nullptr) return;
@@ -403,7 +399,7 @@ class NrrdReader {
         if (!units.empty()) setUnits(units, listener_, volume_);
     }
 
-    // Words in quotes, which some programs leave out.
+    // Splits quoted words; some programs leave the quotes out.
     static std::vector<std::string> wordsIn(const std::string& text) {
         std::vector<std::string> words;
         constexpr const char* kBlanks = " \t";

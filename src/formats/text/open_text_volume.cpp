@@ -26,18 +26,18 @@
 namespace deltasplat {
 namespace {
 
-// Whether the header lies under gzip, with all that follows it.
+// Whether gzip covers the header and all that follows.
 bool isPackedAsWhole(const TextVolume& volume) {
     return volume.dataFile == volume.header && packingOf(volume.header) == Packing::kGzip;
 }
 
-// Whether data that are said to be packed begin so. Plain ones that do by chance are refused when
-// they are unpacked, and never taken for others.
+// Whether data declared as packed begin like packed data. Plain data may do so by chance; unpacking
+// then fails, and nothing is misread.
 bool beginsPacked(const std::filesystem::path& file, std::uint64_t start) {
     if (packingOf(file, start) != Packing::kNone) return true;
     std::array<unsigned char, 2> begin{};
     FileBytes(file).read(start, begin.data(), begin.size());
-    // RFC 1950, 2.2: deflate, a window of at most 32 KiB, and a sum that 31 divides.
+    // RFC 1950, 2.2: deflate, a window of at most 32 KiB, a checksum divisible by 31.
     return (begin[0] & 15) == 8 && begin[0] >> 4 <= 7 && (begin[0] << 8 | begin[1]) % 31 == 0;
 }
 
@@ -49,7 +49,6 @@ std::string dataText(const TextVolume& volume) {
     return volume.sizesText() + " " + rawTypeName(volume.layout.type);
 }
 
-// The file of values that a header tells of.
 RawFile rawFileOf(const TextVolume& volume) {
     RawFile file{volume.dataFile, volume.layout};
     file.volumes = volume.volumes;
@@ -61,7 +60,7 @@ RawFile rawFileOf(const TextVolume& volume) {
                        "a place for their begin");
         }
         if (volume.packed) {
-            // Packed twice: what is packed once fits into memory, or the volume would not.
+            // Packed twice: data packed once fit into memory if the volume does.
             file.bytes = FileBytes::unpacked(volume.header);
             file.packing = volume.packing;
             file.packedStart = volume.dataStart;
@@ -75,8 +74,7 @@ RawFile rawFileOf(const TextVolume& volume) {
     }
     const std::uint64_t held = std::filesystem::file_size(volume.dataFile);
     const std::uint64_t rest = held - std::min(held, volume.dataStart);
-    // What is said to be packed and is not has the very size of plain values, and the other way
-    // round.
+    // Data falsely declared packed have exactly plain values' size; falsely plain ones do not.
     const bool isPlain = volume.packed && rest == wanted + volume.skipBytes &&
                          !beginsPacked(volume.dataFile, volume.dataStart);
     const bool isGzip = !volume.packed && !volume.atEnd && volume.dataFile != volume.header &&
@@ -92,7 +90,7 @@ RawFile rawFileOf(const TextVolume& volume) {
             volume.atEnd ? held - std::min(held, wanted) : volume.dataStart + volume.skipBytes;
     }
     const bool plain = file.packing == Packing::kNone;
-    constexpr double kMostRatio = 1032;  // deflate's best
+    constexpr double kMostRatio = 1032;  // of deflate
     const bool holds = plain ? held >= file.layout.skipBytes + wanted
                              : (double(rest) + 1) * kMostRatio >= double(wanted);
     if (!holds) {
@@ -106,7 +104,6 @@ RawFile rawFileOf(const TextVolume& volume) {
     return file;
 }
 
-// The values of a file of text, read one after the other.
 class TextValues {
   public:
     explicit TextValues(const TextVolume& volume)
@@ -116,7 +113,7 @@ class TextValues {
         source_.skip(volume.dataStart + volume.skipBytes, [] {});
     }
 
-    /// Writes the next values, in the processor's byte order (hex: in the file's).
+    /// Writes the next values in native byte order (hex: the file's order).
     void read(std::size_t count, std::byte* to) {
         const auto bytes = std::size_t(rawTypeBytes(volume_.layout.type));
         if (volume_.encoding == TextVolume::Encoding::kHex) {
@@ -175,7 +172,7 @@ class TextValues {
         T value{};
         auto result = std::from_chars(begin, end, value);
         if constexpr (std::is_floating_point_v<T>) {
-            // A number too near to 0 for its type is 0, as for any other reader.
+            // A number too close to 0 for its type becomes 0, as in other readers.
             if (result.ec == std::errc::result_out_of_range && result.ptr == end) {
                 long double wide = 1;
                 const bool isKnown = std::from_chars(begin, end, wide).ec == std::errc{};
@@ -183,7 +180,7 @@ class TextValues {
                 if (isKnown ? std::fabs(wide) < 1 : isTiny) return T(isKnown ? wide : 0);
             }
         }
-        // Whole numbers may be written as real ones are: "3.0".
+        // Integers may be written as reals: "3.0".
         if constexpr (std::is_integral_v<T>) {
             double real = 0;
             const auto whole = std::from_chars(begin, end, real);
@@ -207,14 +204,14 @@ class TextValues {
     std::size_t held_ = 0, used_ = 0;
 };
 
-// @param passed  how many volumes lie before the one that is read
+// @param passed  number of preceding volumes
 DenseSource sourceOfText(const TextVolume& volume, const RawLayout& layout, std::int64_t passed) {
     DenseSource source;
     source.dims = layout.dims;
     source.type = layout.type;
     const bool hex = volume.encoding == TextVolume::Encoding::kHex;
     source.bigEndian = hex ? volume.layout.bigEndian : std::endian::native == std::endian::big;
-    // A number is a digit and what parts it from the next.
+    // A number takes at least a digit and a separator.
     const double least =
         double(wantedBytes(volume)) / (hex ? 0.5 : double(rawTypeBytes(layout.type)) / 2);
     const double held = double(std::filesystem::file_size(volume.dataFile));
@@ -247,8 +244,8 @@ DenseSource sourceOfText(const TextVolume& volume, const RawLayout& layout, std:
     return source;
 }
 
-// Makes a source of one value a voxel of one that has `parts` values side by side.
-// @param one  writes a voxel's value of those of its parts
+// Turns `parts` adjacent values per voxel into one.
+// @param one  writes a voxel's value from its parts
 template <typename One>
 DenseSource joined(DenseSource source, std::int64_t parts, RawType type, const One& one) {
     DenseSource result = source;
@@ -283,10 +280,10 @@ DenseSource partOf(DenseSource source, std::int64_t parts, std::int64_t part) {
                   });
 }
 
-// What the values of layers become where all layers are one: how far up they lie, and the label.
+// Per layer and value: the height in the stack, and the label.
 using Layers = std::map<std::int64_t, std::map<std::int64_t, std::pair<std::size_t, std::int64_t>>>;
 
-// One label a voxel: that of the segment which lies on top.
+// Keeps one label per voxel: the topmost segment's.
 DenseSource flattened(DenseSource source, const TextVolume& volume) {
     Layers layers;
     std::int64_t most = 0;
@@ -324,7 +321,7 @@ DenseSource flattened(DenseSource source, const TextVolume& volume) {
     };
     DenseSource result = joined(std::move(source), volume.volumes, type, one);
     result.bigEndian = std::endian::native == std::endian::big;
-    // Said once, however often values are read.
+    // Warns once, although values may be read repeatedly.
     const auto said = std::make_shared<bool>(false);
     result.forEachLayer = [all = std::move(result.forEachLayer), nameless, said,
                            where = volume.header.string()](const DenseSource::LayerUse& use,
@@ -408,7 +405,7 @@ DenseSource openMetaImage(const std::filesystem::path& file, const InputKind&,
     return openTextVolume(readMetaVolume(file, listener), options, listener);
 }
 
-// The header's own file, and that of its data, unless that follows the header.
+// Returns the header's file and its separate data file, if any.
 std::vector<std::filesystem::path> withData(const std::filesystem::path& header,
                                             const std::string& dataFile) {
     if (dataFile.empty()) return {header};

@@ -46,7 +46,7 @@ bool controls(char c) {
     return (static_cast<unsigned char>(c) < ' ' && c != '\t') || c == '\x7f';
 }
 
-// The lines of a file, plain or under gzip, one after the other.
+// The lines of a file, plain or gzipped.
 class Lines {
   public:
     explicit Lines(const std::filesystem::path& file)
@@ -86,7 +86,6 @@ class Lines {
     std::uint64_t place_ = 0;
 };
 
-// As much of a line as a message can hold.
 std::string quoted(const std::string& line) {
     constexpr std::size_t kMost = 60;
     const bool whole = line.size() <= kMost;
@@ -98,14 +97,14 @@ std::string quoted(const std::string& line) {
     refuseInput(lines.where(), quoted(line), expected);
 }
 
-// In fields that mean something here. What some take for the end of a line, and others do not, is
-// in none of them.
+// Checks a field that is used here. Refuses control characters, because programs disagree about
+// which of them end a line.
 void requireText(const Lines& lines, const std::string& line) {
     if (std::ranges::none_of(line, controls)) return;
     refuseInput(lines.where(), "control characters in " + quoted(line), "lines of text");
 }
 
-// Of a field given twice readers take one or the other.
+// Readers disagree about which of two equal fields counts.
 void addField(const Lines& lines, const TextHeader::Field& field, TextHeader& header) {
     if (header.find(field.name) != nullptr) {
         refuseInput(lines.where(), "the field " + printable(field.name) + " twice",
@@ -114,7 +113,7 @@ void addField(const Lines& lines, const TextHeader::Field& field, TextHeader& he
     header.fields.push_back(field);
 }
 
-// Fields of the format, which come in upper and lower case, and with the blank or without.
+// The format's fields. Files spell them in any case, with or without the blank.
 constexpr std::array<std::string_view, 31> kNrrdFields{"content",
                                                        "number",
                                                        "type",
@@ -147,7 +146,7 @@ constexpr std::array<std::string_view, 31> kNrrdFields{"content",
                                                        "measurement frame",
                                                        "data file"};
 
-// Fields that say what the voxels are and where. Others are anybody's, and passed over.
+// Fields that describe voxels and placement. Other fields are private and skipped.
 constexpr std::array<std::string_view, 28> kMetaFields{"NDims",
                                                        "CompressedData",
                                                        "CompressedDataSize",
@@ -177,7 +176,7 @@ constexpr std::array<std::string_view, 28> kMetaFields{"NDims",
                                                        "intent_code",
                                                        "ElementDataFile"};
 
-// The fields of a format by their letters.
+// A format's fields, by their names without case and blanks.
 using Spellings = std::map<std::string, std::string_view, std::less<>>;
 Spellings spellingsOf(std::span<const std::string_view> fields) {
     Spellings spellings;
@@ -185,16 +184,16 @@ Spellings spellingsOf(std::span<const std::string_view> fields) {
     return spellings;
 }
 
-// How a format spells the field whose letters these are; empty if it has none.
+// Returns the format's spelling of a field; empty if it has no such field.
 std::string_view spellingOf(const Spellings& spellings, const std::string& letters) {
     const auto found = spellings.find(letters);
     return found == spellings.end() ? std::string_view() : found->second;
 }
 
-// Takes a line "key:=value", where backslashes stand before what would end a line or a key.
+// Takes a line "key:=value", in which backslashes escape line ends and backslashes.
 void addKeyValue(const Lines& lines, const std::string& line, std::size_t sign,
                  TextHeader& header) {
-    // Short keys take many times the bytes that they have in the file.
+    // Short keys need much more memory than their bytes in the file.
     constexpr std::size_t kKeysAtOnce = std::size_t{1} << 14;
     if (header.keyValues.size() % kKeysAtOnce == 0) {
         requireMemory(lines.where(), double(header.keyValues.size() + kKeysAtOnce) *
@@ -213,7 +212,7 @@ void addKeyValue(const Lines& lines, const std::string& line, std::size_t sign,
     header.keyValues.emplace_back(plain(line.substr(0, sign)), plain(line.substr(sign + 2)));
 }
 
-// What follows the first colon tells a field from a key, whatever the key's name.
+// The characters after the first colon tell fields from keys, whatever the key's name.
 void addNrrdLine(const Lines& lines, const std::string& line, TextHeader& header) {
     const std::size_t colon = std::min(line.find(':'), line.size());
     const std::string before = line.substr(0, colon);
@@ -231,7 +230,7 @@ void addNrrdLine(const Lines& lines, const std::string& line, TextHeader& header
     }
     requireText(lines, line);
     const std::size_t value = std::min(line.size(), line.find_first_not_of(" \t", colon + 1));
-    // Blanks behind the name of a file are part of it.
+    // Blanks after a file name belong to the name.
     const bool isName = letters == "datafile";
     addField(lines, {letters, isName ? line.substr(value) : trimmed(line.substr(value))}, header);
 }
@@ -319,7 +318,7 @@ namespace {
 
 constexpr std::int64_t kMostBytes = std::int64_t{1} << 62;
 
-// The unit that stands for all: that of each if they are one, else millimetres if all are known.
+// Returns the unit that all share, or millimetres if units differ and all are known.
 std::string commonUnit(const std::vector<std::string>& units) {
     const bool same = std::ranges::all_of(units, [&](const auto& u) { return u == units.front(); });
     if (same) return units.front();
@@ -377,7 +376,7 @@ std::optional<std::vector<double>> numbersIn(const std::string& text) {
 }
 
 void setDataFile(const std::string& name, TextVolume& volume) {
-    // Names that begin with "c:" or "~" are not looked up beside the header by other programs.
+    // Other programs do not resolve names with "c:" or "~" relative to the header.
     const bool elsewhere = name.starts_with('~') || (name.size() > 1 && name[1] == ':');
     if (name.empty() || name == "-" || lowerCase(name).rfind("list", 0) == 0 || elsewhere ||
         name.find('%') != std::string::npos) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text format as "USD Crate and text file formats" and the files that usdcat writes show it;
-// what is not needed here is passed over by its brackets.
+// Follows the text format in "USD Crate and text file formats" and files written by usdcat.
+// Unneeded parts are skipped by their brackets.
 #include "formats/usd/usd_layer.h"
 
 #include <algorithm>
@@ -65,7 +65,7 @@ class UsdParser {
         failAt(line_, got.empty() ? "nothing" : printable(got), expected);
     }
 
-    // What stands here, as far as a message needs it.
+    // Refuses the text at the current place, quoting its start.
     [[noreturn]] void failHere(const std::string& expected) {
         if (peek() == 0) fail("the end of the file", expected);
         std::size_t end = at_ + 1;
@@ -81,7 +81,7 @@ class UsdParser {
         return text_.compare(at_, what.size(), what) == 0;
     }
 
-    // The next character that counts; 0 at the end.
+    // Returns the next significant character; 0 at the end.
     char peek() {
         while (at_ < text_.size()) {
             const char c = text_[at_];
@@ -117,7 +117,7 @@ class UsdParser {
         return text_.substr(begin, at_ - begin);
     }
 
-    // A type, such as float3, or token[].
+    // Reads a type such as float3 or token[].
     std::string typeName() {
         std::string name = word("a type, def, over, class or }");
         if (raw() == '[') {
@@ -183,7 +183,6 @@ class UsdParser {
         return isNegative ? -value : value;
     }
 
-    // Passes over what stands between brackets, whatever is in it.
     void skipGroup() {
         const int begun = line_;
         std::string open;
@@ -331,14 +330,14 @@ class UsdParser {
         for (const UsdSample& sample : property.samples) property.times.push_back(sample.time);
     }
 
-    // Counts what a layer takes besides the file's text, and asks for it now and then.
+    // Counts the layer's memory beyond the file's text, and requests it in steps.
     void keep(std::size_t bytes) {
         constexpr std::size_t kStep = std::size_t{4} << 20;
         kept_ += bytes;
         if (kept_ >= kStep) requireKept();
     }
     void requireKept() {
-        // Lists grow to twice of what they hold.
+        // Vectors grow to twice their content.
         requireMemory(file_.string(), 2 * double(std::exchange(kept_, 0)));
     }
 

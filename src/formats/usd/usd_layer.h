@@ -13,17 +13,16 @@
 
 namespace deltasplat {
 
-/// A value in USD's text format.
 struct UsdValue {
     enum class Kind {
-        kNone,    ///< None: there is no value
-        kNumber,  ///< of tuples and lists of numbers see `items`
+        kNone,    ///< None: no value
+        kNumber,  ///< a single number; tuples and lists have `items`
         kText,    ///< between quotes
         kWord,    ///< true, false or another bare word
         kAsset,   ///< @...@
         kPath,    ///< <...>
         kItems,   ///< (...) or [...]
-        kSkipped  ///< what is never asked for, and not kept
+        kSkipped  ///< not kept, because nobody asks for it
     };
     Kind kind = Kind::kNone;
     int line = 1;
@@ -31,7 +30,7 @@ struct UsdValue {
     std::string text;
     std::vector<UsdValue> items;
 
-    /// Returns the value as an error quotes it.
+    /// Returns the value as error messages quote it.
     std::string quoted() const;
 };
 
@@ -49,11 +48,10 @@ struct UsdProperty {
     std::vector<double> times;       ///< of the samples
 };
 
-/// What has names, in the file's order; of several of one name the first is found.
+/// Named entries in file order. find() returns the first with a name.
 template <typename Named>
 class UsdList {
   public:
-    /// Adds `one`, and returns it.
     Named& add(Named one) {
         places_.emplace(one.name, all_.size());
         return all_.emplace_back(std::move(one));
@@ -76,33 +74,30 @@ class UsdList {
 };
 
 struct UsdPrim {
-    std::string type;  ///< empty: of none
+    std::string type;  ///< empty: untyped
     std::string name;
     int line = 1;
-    bool isClass = false;               ///< or an `over`: shows nothing by itself
-    std::vector<std::string> composed;  ///< of what is not followed: references, payload, ...
+    bool isClass = false;               ///< or an `over`: not shown by itself
+    std::vector<std::string> composed;  ///< arcs that are not followed: references, payload, ...
     std::map<std::string, UsdValue> metadata;
     UsdList<UsdProperty> properties;
     UsdList<UsdPrim> children;
 
-    /// Returns null if there is none.
     const UsdProperty* find(std::string_view property) const { return properties.find(property); }
 };
 
-/// The most items of a list that are kept.
+/// Longest list that is kept.
 inline constexpr std::size_t kMostUsdItems = 1024;
 
-/// One file in USD's text format (.usda): its prims as they stand there. Nothing is composed:
-/// sublayers, references, payloads, inherited and specialized prims and variants are not followed.
-/// Values of arrays other than token[] are passed over, and of these what is behind the first
-/// kMostUsdItems.
+/// One .usda file, its prims as written. Nothing is composed: no sublayers, references, payloads,
+/// inherits, specializes or variants. Arrays are skipped, except token[] up to kMostUsdItems.
 struct UsdLayer {
     std::filesystem::path file;
     UsdPrim root;  ///< without a name, with the layer's metadata
 };
 
-/// @throw Error(kInput) `<file>:<line>: got X; expected Y` if it is no such file, longer than 16
-///        MiB or nested deeper than 64 levels; Error(kFailed) if there is not enough memory for it
+/// @throw Error(kInput) `<file>:<line>: got X; expected Y` if the file is no .usda, longer than 16
+///        MiB or nested deeper than 64 levels; Error(kFailed) if memory is short
 UsdLayer readUsdLayer(const std::filesystem::path& file);
 
 }  // namespace deltasplat

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: Pixar, "Universal Scene Description", UsdGeomXformable and UsdTimeCode: how xformOps
-// are put together, and what lies between time samples.
+// Based on: Pixar, "Universal Scene Description", UsdGeomXformable, UsdTimeCode (interpolation).
 #include "formats/usd/usd_scene.h"
 
 #include <algorithm>
@@ -51,7 +50,7 @@ void collect(const UsdPrim& prim, std::string_view type, UsdChain& chain,
     }
 }
 
-// Numbers of a value, in their order; false if it has anything else.
+// Appends a value's numbers in order; false if it holds anything else.
 bool flatten(const UsdValue& value, std::vector<double>& numbers) {
     if (value.kind == Kind::kNumber) numbers.push_back(value.number);
     if (value.kind != Kind::kItems) return value.kind == Kind::kNumber;
@@ -86,7 +85,7 @@ glm::dmat4 scaling(const std::vector<double>& v) {
     return matrix;
 }
 
-// Of a quaternion w, x, y, z, of any length.
+// From a quaternion w, x, y, z of any length.
 glm::dmat4 orientation(const std::vector<double>& v) {
     const double squares = v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3];
     if (!(squares > 0)) return glm::dmat4(1);
@@ -104,8 +103,8 @@ std::string kindOf(std::string_view op) {
     return std::string(op.substr(0, op.find(':')));
 }
 
-// Matrices that turn, scale evenly and move are taken apart between samples: numbers of their own
-// would shrink what turns.
+// Interpolates matrices of rotation, uniform scale and translation by parts: element-wise
+// interpolation would shrink rotating objects.
 glm::dmat4 transformAt(const UsdLayer& layer, const UsdProperty& op, double time) {
     const std::vector<double>& times = op.times;
     const KeyPlace place = keyPlace(times, time);
@@ -115,7 +114,7 @@ glm::dmat4 transformAt(const UsdLayer& layer, const UsdProperty& op, double time
         try {
             return mixed(a, b, place.share);
         } catch (const Error&) {
-            // Sheared or unevenly scaled: number by number.
+            // Sheared or unevenly scaled matrices are interpolated element-wise.
         }
     }
     return matrixOf(numbersAt(layer, op, time, 16));
@@ -147,7 +146,7 @@ glm::dmat4 opAt(const UsdLayer& layer, const UsdProperty& op, const std::string&
     fail(layer, op.line, op.name, "a known xformOp");
 }
 
-// Of one prim, and whether it stands in the world itself.
+// A prim's placement, and whether it ignores its ancestors'.
 struct LocalPlace {
     glm::dmat4 parentFromPrim{1};
     bool resets = false;
@@ -370,7 +369,7 @@ class UsdVolumeReader {
                     expected);
     }
 
-    // A volume is where it stands itself, wherever its fields are.
+    // A Volume's own placement counts, not its fields'.
     const UsdChain& place() const { return volume_.empty() ? asset_ : volume_; }
 
     static std::string targetOf(const UsdProperty& relationship) {
@@ -389,7 +388,7 @@ class UsdVolumeReader {
 
     UsdChain assetOf(const UsdProperty& field) const {
         const std::string path = targetOf(field);
-        // Paths that do not begin at the root begin at the volume.
+        // Relative paths start at the volume.
         const std::string whole = path.starts_with("/") ? path : pathOf(volume_) + "/" + path;
         const UsdChain asset = primAt(layer_, whole);
         if (asset.empty()) fail(field.line, "<" + path + ">, which is not there", "a prim");
@@ -418,15 +417,14 @@ class UsdVolumeReader {
             fail(line, value.quoted() + " for filePath", "@FILE.vdb@");
         const std::filesystem::path given = value.text;
         if (given.extension() != ".vdb") fail(line, value.quoted() + " for filePath", "a .vdb");
-        // USD takes names apart by their text, whatever folders are links; what is looked at is
-        // what is opened.
+        // USD resolves names as text, ignoring links; the resulting name is checked and opened.
         const std::filesystem::path file = (layer_.file.parent_path() / given).lexically_normal();
         requireConfined(layer_.file, file);
         return file;
     }
 
     UsdLayer layer_;
-    UsdChain volume_;  // into layer_, as asset_; empty: the asset alone was named
+    UsdChain volume_;  // into layer_, like asset_; empty: only the asset was named
     UsdChain asset_;
 };
 

@@ -14,65 +14,61 @@
 
 namespace deltasplat {
 
-/// A prim and those that it stands in, the outermost first.
+/// A prim with its ancestors, the outermost first.
 using UsdChain = std::vector<const UsdPrim*>;
 
-/// Returns "/World/cam".
+/// Returns the path of a prim, such as "/World/cam".
 std::string pathOf(const UsdChain& chain);
 
-/// Returns all prims of a type that are shown: those that `def` makes, in no class and not
-/// inactive.
+/// Returns all shown prims of a type: made by `def`, outside of classes and active.
 std::vector<UsdChain> primsOfType(const UsdLayer& layer, std::string_view type);
 
-/// Returns the prim that a path names; empty if there is none.
+/// Returns the prim with a path; empty if it does not exist.
 UsdChain primAt(const UsdLayer& layer, std::string_view path);
 
-/// Chooses the prim of a type that a path names or, if it is empty, the only one. The path may also
-/// be that of a prim that holds only one.
-/// @throw Error(kInput) naming those there are
+/// Chooses the prim of a type by its path, or the only one if the path is empty. The path may also
+/// name a prim that contains only one.
+/// @throw Error(kInput) with a list of the candidates
 UsdChain choosePrim(const UsdLayer& layer, std::string_view type, const std::string& path);
 
-/// Returns a property's value at a time: the samples' on a straight line between them if they are
-/// numbers, or of the one before; before the first the first one's; else the value itself. Null if
-/// there is none, or it is blocked.
-/// @param mixes  numbers are taken between samples
+/// Returns a property's value at a time: numbers interpolated linearly, else the sample before the
+/// time (or the first one); without samples the plain value. Null if missing or blocked.
+/// @param mixes  whether to interpolate numbers
 UsdValue valueAt(const UsdProperty& property, double time, bool mixes = true);
 
-/// Returns a number, or several, of a property.
-/// @throw Error(kInput) if it has a value that is something else or not finite
+/// Returns `count` numbers of a property.
+/// @throw Error(kInput) if a value is no number or not finite
 std::vector<double> numbersAt(const UsdLayer& layer, const UsdProperty& property, double time,
                               std::size_t count);
 
-/// Where a prim stands: its xformOps and those of all that it stands in.
-/// @throw Error(kInput) for what these cannot be
+/// Returns a prim's placement: its xformOps combined with those of its ancestors.
+/// @throw Error(kInput) if an op is invalid
 glm::dmat4 worldFromPrim(const UsdLayer& layer, const UsdChain& chain, double time);
 
-/// Adds the times of samples that say where a prim stands.
+/// Adds the sample times of a prim's placement, or of one property.
 void addTimes(const UsdChain& chain, std::vector<double>& times);
 void addTimes(const UsdPrim& prim, std::string_view property, std::vector<double>& times);
 
-/// Says what of the prims is not followed, such as references, and what moves nothing.
+/// Warns of what is ignored: composition arcs such as references, and ops without effect.
 void warnOfUsd(const UsdLayer& layer, const UsdChain& chain, const Listener& listener);
 
-/// A file's grid that a scene places in its world.
+/// A grid of a file, as placed in a scene's world.
 struct UsdVolume {
-    std::filesystem::path file;  ///< empty: none is shown
-    std::string grid;            ///< empty: the scene names none
+    std::filesystem::path file;  ///< empty: no volume shown
+    std::string grid;            ///< empty: not named by the scene
     glm::dmat4 worldFromVolume{1.0};
 };
 
-/// The same at each frame.
 struct UsdVolumeMotion {
-    std::vector<double> frames;  ///< where it changes, ascending; empty: it stands still
-    /// @throw Error(kInput) for what a volume cannot be
+    std::vector<double> frames;  ///< ascending frames with changes; empty: static
+    /// @throw Error(kInput) if the volume is invalid
     std::function<UsdVolume(double frame)> at;
     std::optional<glm::dvec3> upWorld;
 };
 
-/// Reads which volume a .usda shows: of a Volume prim the field `density`, else its first one; or
-/// of an OpenVDBAsset itself.
-/// @param name  path of the prim; empty: the only Volume or, without one, the only OpenVDBAsset
-/// @throw Error(kInput) as readUsdLayer, and for what it does not show
+/// Finds a .usda's volume: a Volume's field `density`, else its first one; or an OpenVDBAsset.
+/// @param name  prim path; empty: the only Volume or, if there is none, the only OpenVDBAsset
+/// @throw Error(kInput) as readUsdLayer, and if the prim shows no volume
 UsdVolumeMotion readUsdVolume(const std::filesystem::path& file, const std::string& name,
                               const Listener& listener);
 

@@ -18,7 +18,6 @@
 namespace deltasplat {
 namespace {
 
-// Returns the most frequent of the values that the book gives the code `code`.
 template <typename Tree>
 double mostFrequentOf(const Tree& tree, const CodeBook& book, Code code) {
     std::map<double, std::uint64_t> counts;
@@ -30,7 +29,7 @@ double mostFrequentOf(const Tree& tree, const CodeBook& book, Code code) {
     return std::max_element(counts.begin(), counts.end(), fewer)->first;
 }
 
-// Takes the old background and the dropped value for the same thing.
+// Equates the old background and the dropped value.
 template <typename T>
 struct Dropped {
     T oldBackground;
@@ -40,13 +39,13 @@ struct Dropped {
     T valueOf(T voxel, bool active) const {
         return !active && voxel == oldBackground ? value : voxel;
     }
-    // Whether the new tree has to say it.
+    // Whether the voxel differs from the new background.
     bool matters(T voxel, bool active) const {
         return isActive(voxel, active) || valueOf(voxel, active) != value;
     }
 };
 
-// Returns null for a leaf that the background says all about.
+// Returns null for a leaf that equals the background.
 template <typename Leaf, typename T>
 std::unique_ptr<Leaf> copyLeaf(const Leaf& leaf, const Dropped<T>& dropped) {
     bool matters = false;
@@ -91,7 +90,7 @@ std::shared_ptr<openvdb::TreeBase> drop(const Tree& tree, double value) {
     return made;
 }
 
-// Whether each code stands for the value, as a grid of this type has it.
+// Whether each code stands for the value in a grid of type T.
 template <typename T>
 std::vector<bool> codesOf(const CodeBook& book, double value) {
     std::vector<bool> codes;
@@ -105,7 +104,7 @@ std::vector<bool> codesOf(const CodeBook& book, double value, const std::string&
     return codesOf<double>(book, value);
 }
 
-// Returns null for a leaf of which nothing is left.
+// Returns null for a leaf that becomes empty.
 std::unique_ptr<CodeTree::Leaf> leafWithout(const CodeTree::Leaf& leaf,
                                             const std::vector<bool>& dropped) {
     auto copy = std::make_unique<CodeTree::Leaf>(leaf);
@@ -119,14 +118,14 @@ std::unique_ptr<CodeTree::Leaf> leafWithout(const CodeTree::Leaf& leaf,
 }  // namespace
 
 double mostFrequentValue(const Volume& volume) {
-    const bool known = !volume.hasBackground && volume.mostFrequent;
-    if (known && volume.mostFrequent->count > 0) return volume.mostFrequent->value;
-    const auto& counts = volume.histogram;
+    const bool known = !volume.hasBackground() && volume.mostFrequent();
+    if (known && volume.mostFrequent()->count > 0) return volume.mostFrequent()->value;
+    const auto& counts = volume.histogram();
     const auto code = Code(std::max_element(counts.begin(), counts.end()) - counts.begin());
-    double value = volume.empty() ? 0 : volume.codeBook.valueOf(code);
-    if (volume.empty() || volume.codeBook.isExact() || !volume.source) return value;
-    volume.source->grid.apply<ScalarTrees>(
-        [&](const auto& tree) { value = mostFrequentOf(tree, volume.codeBook, code); });
+    double value = volume.empty() ? 0 : volume.codeBook().valueOf(code);
+    if (volume.empty() || volume.codeBook().isExact() || !volume.source()) return value;
+    volume.source()->grid.apply<ScalarTrees>(
+        [&](const auto& tree) { value = mostFrequentOf(tree, volume.codeBook(), code); });
     return value;
 }
 
@@ -137,11 +136,11 @@ TreeGrid dropBackground(const TreeGrid& grid, double value) {
 }
 
 void dropBackground(Volume& volume, double value, const std::string& type) {
-    const std::vector<bool> dropped = codesOf(volume.codeBook, value, type);
-    const CodeTree::Tree& tree = volume.codes->tree();
+    const std::vector<bool> dropped = codesOf(volume.codeBook(), value, type);
+    const CodeTree::Tree& tree = volume.codes()->tree();
     std::vector<const CodeTree::Leaf*> leaves;
     tree.getNodes(leaves);
-    requireMemory("grid \"" + volume.name + "\"",
+    requireMemory("grid \"" + volume.name() + "\"",
                   double(leaves.size()) * leafBytes<CodeTree::Leaf>());
     std::vector<std::unique_ptr<CodeTree::Leaf>> copies(leaves.size());
     forLeafRuns(leaves.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -155,10 +154,12 @@ void dropBackground(Volume& volume, double value, const std::string& type) {
     forActiveTiles(tree, [&](const auto& tile) {
         if (!dropped[*tile]) accessor.addTile(tile.getLevel(), tile.getCoord(), *tile, true);
     });
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-        if (dropped[code]) volume.histogram[code] = 0;
+    VolumeData left = volume.data();
+    for (std::size_t code = 0; code < left.histogram.size(); ++code) {
+        if (dropped[code]) left.histogram[code] = 0;
     }
-    volume.codes = kept;
+    left.codes = kept;
+    volume = Volume(std::move(left));
 }
 
 }  // namespace deltasplat

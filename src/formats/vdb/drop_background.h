@@ -8,18 +8,16 @@
 
 namespace deltasplat {
 
-/// Returns the most frequent active value of a volume, the smallest of several: exactly, if the
-/// code book is exact or there is no source; otherwise the most frequent one of those that share
-/// the fullest code. 0 for an empty volume.
+/// Returns the most frequent active value of a volume, the smallest of several, or 0 without any.
+/// If the code book is inexact and a source exists, only values of the fullest code compete.
 double mostFrequentValue(const Volume& volume);
 
-/// Returns a copy of a scalar grid with background `value`, in which no active voxel has this
-/// value: those, and what held the old background, are inactive and hold the new one. The active
-/// voxels keep their values, and so do inactive ones that hold neither.
+/// Returns a copy of a scalar grid with background `value`. Active voxels of this value become
+/// inactive; inactive voxels of the old background become `value`. All others stay unchanged.
 TreeGrid dropBackground(const TreeGrid& grid, double value);
 
-/// Does the same with the codes of a volume without background, and its histogram.
-/// @param type  of the grid that it becomes: codes are dropped whose values are `value` there
+/// Does the same with the codes of a volume without background, and with its histogram.
+/// @param type  of the grid to come: codes are dropped whose value in this type is `value`
 void dropBackground(Volume& volume, double value, const std::string& type);
 
 }  // namespace deltasplat

@@ -35,9 +35,9 @@
 namespace deltasplat {
 namespace {
 
-/// What TreeLeaves is, of a grid whose leaves' values are still in their file, packed.
+/// Stands in for TreeLeaves with a grid whose leaf values are still packed in the file.
 /// @tparam T       the grid's value type
-/// @tparam Stored  what values are in the file: that, or the std::uint16_t that a half is
+/// @tparam Stored  its type in the file: T, or std::uint16_t for halves
 template <typename T, typename Stored = T>
 class FileLeaves {
   public:
@@ -46,8 +46,8 @@ class FileLeaves {
         LeafMask mask;  // of the last leaf whose values were asked for
     };
 
-    /// @param passes    over all leaves, how many are to be expected
-    /// @param listener  hears how far leaves are asked for
+    /// @param passes    expected passes over all leaves
+    /// @param listener  hears how far the passes are
     FileLeaves(const VdbValues& values, T background, int passes, const Listener& listener)
         : packed_(values.leaves),
           tiles_(values.tiles),
@@ -66,7 +66,7 @@ class FileLeaves {
         return openvdb::Coord(packed_.leaves()[i].origin.data());
     }
     const LeafMask& mask(std::size_t, const Room& room) const { return room.mask; }
-    /// Of a leaf whose values are damaged there are none.
+    /// Returns no values for a damaged leaf.
     std::span<const Stored> values(std::size_t i, Room& room) const {
         if (i == 0) ++pass_;
         if (i % kLeafRun == 0) {
@@ -79,11 +79,9 @@ class FileLeaves {
         room.mask = {};
         return {};
     }
-    /// Whether any that were asked for were.
     bool areDamaged() const { return areDamaged_; }
 
-    /// Returns a tree for codes of these leaves, which have no room for them, with those of tiles.
-    /// @param filled  becomes its leaves
+    /// Returns a tree with tile codes, and with leaves (`filled`) that have no room for codes yet.
     std::shared_ptr<CodeTree> makeCodes(const std::vector<Code>& tileCodes,
                                         std::vector<CodeTree::Leaf*>& filled) const {
         std::vector<openvdb::Coord> places(count());
@@ -92,7 +90,7 @@ class FileLeaves {
         filled = addNodes(places, tiles_.places(), tileCodes, codes->tree());
         return codes;
     }
-    /// Makes room for codes in a leaf of that tree, those whose values were asked for last.
+    /// Makes room in a leaf for the codes of the values that were asked for last.
     void makeRoom(const Room& room, CodeTree::Leaf& leaf) const {
         for (openvdb::Index x = 0; x < room.mask.size(); ++x)
             leaf.getValueMask().template getWord<std::uint64_t>(x) = room.mask[x];
@@ -114,7 +112,7 @@ class FileLeaves {
 
 namespace {
 
-// Replaces what is not finite, or refuses it.
+// Replaces values that are not finite, or refuses them.
 template <typename Tree>
 void settleNonFinite(Tree& tree, const GridScan& range, const GridCodesOptions& options) {
     if (!options.reading.nanValue) {
@@ -135,7 +133,7 @@ void settleNonFinite(Tree& tree, const GridScan& range, const GridCodesOptions& 
                           " replaced by " + numberText(*options.reading.nanValue));
 }
 
-// What OpenVDB's sdfToFogVolume needs of a grid.
+// Interface of a grid that OpenVDB's sdfToFogVolume needs.
 template <typename T>
 struct LevelSet {
     using TreeType = T;
@@ -150,8 +148,7 @@ struct LevelSet {
     TreeGrid& grid;
 };
 
-// Returns whether the grid was a level set, and has become fog: another tree.
-// @tparam Tree  what grid.tree is
+// Turns a level set into fog, with a new tree, if that is asked for. Returns whether it did.
 template <typename Tree>
 bool makeFog(TreeGrid& grid, const GridCodesOptions& options) {
     if (gridClassOf(grid.metadata) != kLevelSetClass || !options.reading.levelSetToFog)
@@ -168,7 +165,7 @@ bool makeFog(TreeGrid& grid, const GridCodesOptions& options) {
     return true;
 }
 
-// Returns whether more of a level set is active than was.
+// Returns whether more voxels of a level set became active.
 bool completeLevelSet(TreeGrid& grid, const GridCodesOptions& options) {
     const auto& surface = options.reading.levelSetSurface;
     if (!surface || gridClassOf(grid.metadata) != kLevelSetClass) return false;
@@ -182,7 +179,7 @@ bool completeLevelSet(TreeGrid& grid, const GridCodesOptions& options) {
     return added > 0 || surface->isSolid;
 }
 
-// Puts the codes of a leaf's active voxels where these are.
+// Moves the codes of a leaf's active voxels to their places.
 void spread(const Code* codes, CodeTree::Leaf& leaf) {
     Code* out = leaf.buffer().data();
     for (openvdb::Index row = 0; row < CodeTree::Leaf::SIZE; row += 64) {
@@ -196,9 +193,8 @@ void spread(const Code* codes, CodeTree::Leaf& leaf) {
     }
 }
 
-// Makes a tree of codes of leaves and tiles, and counts these: encode(worker, values, codes) turns
-// the values of a leaf's active voxels into codes. Where values are damaged, no more leaves are
-// filled.
+// Makes a tree of the codes of leaves and tiles and counts the codes. encode(worker, values, codes)
+// encodes the active values of a leaf. After damaged values, no more leaves are filled.
 template <typename Leaves, typename Encode>
 std::shared_ptr<CodeTree> fillCodes(const Leaves& leaves, const std::vector<Code>& tileCodes,
                                     CodeCounts& counts, const Encode& encode) {
@@ -214,7 +210,7 @@ std::shared_ptr<CodeTree> fillCodes(const Leaves& leaves, const std::vector<Code
         LeafRoom<CodeTree::Leaf> activeCodes;
         CodeTree::Leaf& leaf = *filled[i];
         const auto values = leaves.values(i, *rooms[worker]);
-        // What Blosc takes for a moment leaves gaps.
+        // Blosc's temporary memory leaves gaps.
         expectPieces(std::size_t(1.5 * leafBytes<CodeTree::Leaf>()));
         leaves.makeRoom(*rooms[worker], leaf);
         if (values.empty() || values.size() != leaf.onVoxelCount()) return;
@@ -233,13 +229,12 @@ std::shared_ptr<CodeTree> fillCodes(const Leaves& leaves, const std::vector<Code
                     for (std::size_t i = begin; i < end && !leaves.areDamaged(); ++i)
                         fill(worker, i);
                 });
-    // Leaves without active voxels may lie outside of the box of those.
+    // Leaves without active voxels may lie outside of the active voxels' box.
     std::erase_if(described, [](const CodeLeaf& leaf) { return !leaf.leaf; });
     codes->noteLeaves(std::move(described));
     return codes;
 }
 
-// Turns values into the codes of a book.
 template <typename T>
 void encodeAll(const CodeBook& book, const BookEncoder& encode, std::span<const T> values,
                Code* codes) {
@@ -274,7 +269,7 @@ std::shared_ptr<CodeTree> codesOfLeaves(const Leaves& leaves, const CodeBook& bo
 }
 
 void takeCodes(std::shared_ptr<CodeTree> codes, CodeCounts& counts, const GridCodesOptions& options,
-               Volume& volume) {
+               VolumeData& volume) {
     openvdb::CoordBBox active;
     if (codes->tree().evalActiveVoxelBoundingBox(active))
         volume.box = boxOfVoxels(active, options.where);
@@ -283,20 +278,19 @@ void takeCodes(std::shared_ptr<CodeTree> codes, CodeCounts& counts, const GridCo
     summarize(volume);
 }
 
-// Chooses a code book and turns values into codes of it.
-// @param scan  of kNumbersAlone
+// Chooses a code book and encodes all values, by a scan of kNumbersAlone.
 template <typename Leaves>
 void fillFromLeaves(const Leaves& leaves, GridScan scan, const GridCodesOptions& options,
-                    Volume& volume) {
+                    VolumeData& volume) {
     using T = typename Leaves::Value;
     constexpr bool kReal = std::is_floating_point_v<T>;
     const bool isLinear = kReal && options.reading.bits;
     if (isLinear || !plainBook(scan.census, kReal))
         scan = scanLeaves(leaves, {.distinct = !isLinear, .survey = sizeof(T) > 1});
     const T background = leaves.background();
-    // Active voxels may be as empty as inactive ones: then they have that very value.
+    // Active voxels may be as empty as inactive ones: then they have exactly the background.
     if (isFinite(background)) scan.census.frequent = {{double(background), 0}};
-    // Masks have nothing but true, which stays 1.
+    // Masks hold only true, which stays 1.
     volume.codeBook = std::is_same_v<T, bool>
                           ? CodeBook::integer(0)
                           : chooseBook(scan.census, kReal, options.reading, options.where);
@@ -310,9 +304,8 @@ void fillFromLeaves(const Leaves& leaves, GridScan scan, const GridCodesOptions&
     warnOfCodeError(options.where, volume, options.reading, options.listener);
 }
 
-// @tparam Tree  what grid.tree is
 template <typename Tree>
-void fill(const GridCodesOptions& options, TreeGrid& grid, Volume& volume) {
+void fill(const GridCodesOptions& options, TreeGrid& grid, VolumeData& volume) {
     GridScan scan = scanLeaves(TreeLeaves(*grid.as<Tree>()), kNumbersAlone);
     if constexpr (std::is_floating_point_v<typename Tree::ValueType>) {
         volume.replaced = scan.nonFinite;
@@ -327,7 +320,7 @@ void fill(const GridCodesOptions& options, TreeGrid& grid, Volume& volume) {
     describeGrid(double(tree.background()), grid.metadata, options, volume);
 }
 
-// Returns the codes of tiles, nothing if one is no half.
+// Returns the codes of tiles, or nothing if a value is no half.
 template <typename T>
 std::optional<std::vector<Code>> codesOfHalfTiles(std::span<const T> tiles) {
     std::vector<Code> codes(tiles.size());
@@ -342,7 +335,7 @@ std::optional<std::vector<Code>> codesOfHalfTiles(std::span<const T> tiles) {
 
 template <typename T>
 bool fillFromHalves(const VdbValues& values, T background, const GridCodesOptions& options,
-                    Volume& volume) {
+                    VolumeData& volume) {
     const FileLeaves<T, std::uint16_t> leaves(values, background, 1, options.listener);
     const auto tileCodes = codesOfHalfTiles(leaves.tileValues());
     if (!tileCodes) return false;
@@ -361,14 +354,14 @@ bool fillFromHalves(const VdbValues& values, T background, const GridCodesOption
 
 template <typename T>
 bool fillFromNumbers(const VdbValues& values, T background, const GridCodesOptions& options,
-                     Volume& volume) {
-    // One to see what there is and one for codes; rarely one more.
+                     VolumeData& volume) {
+    // One pass to scan and one for codes; rarely one more.
     const FileLeaves<T> leaves(values, background, 2, options.listener);
     GridScan scan = scanLeaves(leaves, kNumbersAlone);
     if (leaves.areDamaged()) throw DamagedLeaves(options.where);
     if (scan.nonFinite > 0) return false;
     fillFromLeaves(leaves, std::move(scan), options, volume);
-    // Each pass reads the file anew.
+    // The second pass reads the file anew.
     if (leaves.areDamaged()) throw DamagedLeaves(options.where);
     return true;
 }
@@ -394,14 +387,14 @@ IndexBox boxOfVoxels(const openvdb::CoordBBox& active, const std::string& where)
 }
 
 void describeGrid(double background, const VdbMetadata& metadata, const GridCodesOptions& options,
-                  Volume& volume) {
+                  VolumeData& volume) {
     volume.hasBackground = true;
     volume.background = background;
     volume.type = options.type;
     volume.gridClass = gridClassOf(metadata);
 }
 
-bool fillFromLeaves(const VdbValues& values, const GridCodesOptions& options, Volume& volume) {
+bool fillFromLeaves(const VdbValues& values, const GridCodesOptions& options, VolumeData& volume) {
     const auto fillWith = [&](const auto background) {
         const bool isFilled = values.areHalves
                                   ? fillFromHalves(values, background, options, volume)
@@ -412,7 +405,7 @@ bool fillFromLeaves(const VdbValues& values, const GridCodesOptions& options, Vo
     return std::visit(fillWith, values.background);
 }
 
-void fillFromGrid(TreeGrid& grid, const GridCodesOptions& options, Volume& volume) {
+void fillFromGrid(TreeGrid& grid, const GridCodesOptions& options, VolumeData& volume) {
     const bool known = grid.apply<ScalarTrees>(
         [&](const auto& tree) { fill<std::decay_t<decltype(tree)>>(options, grid, volume); });
     if (!known) refuseInput(options.where, "type " + options.type, "a scalar grid");

@@ -12,34 +12,29 @@
 namespace deltasplat {
 
 struct GridCodesOptions {
-    const Listener& listener;  ///< hears of what was taken otherwise than the file says
+    const Listener& listener;  ///< hears where the result deviates from the file
     std::string where;         ///< file and grid, for messages
     std::string type;          ///< value type as the file stores it: "half", "float", ...
     const ReadOptions& reading;
 };
 
-/// Turns a scalar grid into codes and fills in everything of `volume` but its name and transform.
-/// The grid may be changed on the way. A level set
-/// without a band (background not above 0) cannot become fog: it is kept, with a warning. Active
-/// tiles stay tiles at their level. Deterministic.
-/// @throw NotFinite if values are NaN or infinite and not replaced; Error(kInput) if they lie too
-///        far apart
-void fillFromGrid(TreeGrid& grid, const GridCodesOptions& options, Volume& volume);
+/// Turns a scalar grid into codes and fills in all of `volume` but its name and transform. May
+/// change the grid. A level set without a band (background not above 0) cannot become fog: the
+/// level set is kept, with a warning. Active tiles stay tiles at their level. Deterministic.
+/// @throw NotFinite for unreplaced NaN or infinity; Error(kInput) if voxels lie too far apart
+void fillFromGrid(TreeGrid& grid, const GridCodesOptions& options, VolumeData& volume);
 
-/// Does the same with a grid whose leaves' values are still in their file. Returns false if a value
-/// is not finite, or a tile's is no half where leaves have halves: then the grid is to be read as a
-/// whole. Level sets stay what they are.
-/// @throw Error(kInput) also if values cannot be unpacked, or are of other voxels than the topology
-///        says
-bool fillFromLeaves(const VdbValues& values, const GridCodesOptions& options, Volume& volume);
+/// Does the same with a grid whose leaf values are still in the file. Level sets stay level sets.
+/// @return false if the grid must be read as a whole: non-finite values, or no half among halves
+/// @throw Error(kInput) also if values cannot be unpacked or do not belong to the topology's voxels
+bool fillFromLeaves(const VdbValues& values, const GridCodesOptions& options, VolumeData& volume);
 
-/// Returns the box of the active voxels.
 /// @param active  not empty
-/// @throw Error(kInput) if they lie too far apart
+/// @throw Error(kInput) if the voxels lie too far apart
 IndexBox boxOfVoxels(const openvdb::CoordBBox& active, const std::string& where);
 
-/// Fills in what a volume has of a grid beside voxels, name and transform.
+/// Fills in background, type and class of a volume from its grid.
 void describeGrid(double background, const VdbMetadata& metadata, const GridCodesOptions& options,
-                  Volume& volume);
+                  VolumeData& volume);
 
 }  // namespace deltasplat

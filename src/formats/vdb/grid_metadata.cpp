@@ -23,7 +23,7 @@ namespace deltasplat {
 
 namespace {
 
-// A line of its own: what would end it is a blank.
+// Replaces control characters by blanks, so that the text stays on one line.
 std::string inLine(std::string text) {
     for (char& c : text) {
         if (static_cast<unsigned char>(c) < ' ') c = ' ';
@@ -31,7 +31,7 @@ std::string inLine(std::string text) {
     return text;
 }
 
-// Takes the next word of a line and the blank behind it.
+// Takes the next word of a line, and the blank after it.
 std::string takeWord(std::string& line) {
     const std::size_t end = std::min(line.find(' '), line.size());
     const std::string word = line.substr(0, end);
@@ -104,12 +104,12 @@ std::string gridClassOf(const VdbMetadata& metadata) {
 
 namespace {
 
-// As caches of smoke and fire simulations (Mantaflow, Houdini) call them.
+// Names in caches of smoke and fire simulations (Mantaflow, Houdini).
 constexpr std::array<std::string_view, 8> kHelpers{
     "flags", "shadow", "pressure", "obstacle", "obstacles", "collision", "divergence", "mask"};
 constexpr std::array<std::string_view, 2> kHelperBegins{"phi", "fractions"};
-// The surface of a liquid, which simulations of it keep for its own sake; their other names that
-// begin so are of obstacles and inflows.
+// The surface of a liquid, which its simulation keeps for its own sake. Other names with this
+// beginning belong to obstacles and inflows.
 constexpr std::string_view kSurface = "phi";
 constexpr std::array<std::string_view, 4> kHelperEnds{"_noise", "_inflow", "_in", "_old"};
 
@@ -118,7 +118,7 @@ enum Rank { kNone, kHelper, kHelperFog, kSurfaceOfLiquid, kOther, kFog };
 Rank rankOf(const VdbFile& file, const VdbGrid& grid, VdbBytes& bytes) {
     if (grid.vector) return kNone;
     const std::string gridClass = gridClassOf(file.summary(grid, bytes).metadata);
-    // Of types that nobody knows, those are numbers that say what they are numbers of.
+    // A grid of unknown type counts only if its class says that it holds numbers.
     if (!grid.numeric && gridClass != kFogClass && gridClass != kLevelSetClass) return kNone;
     const bool fog = gridClass == kFogClass;
     const std::string name = grid.plainName();
@@ -127,7 +127,6 @@ Rank rankOf(const VdbFile& file, const VdbGrid& grid, VdbBytes& bytes) {
     return fog ? kFog : kOther;
 }
 
-// Null if no grid has the name.
 const VdbGrid* densityOf(const VdbFile& file) {
     const VdbGrid* found = nullptr;
     for (const VdbGrid& grid : file.grids()) {
@@ -174,8 +173,7 @@ const VdbGrid* toldDefaultGrid(const VdbFile& file) {
 
 namespace {
 
-// As caches of Houdini, Mantaflow, EmberGen and others call them, those first that say most of
-// where it burns.
+// Names in caches of Houdini, Mantaflow, EmberGen and others; those that best show flames first.
 constexpr std::array<std::string_view, 6> kFires{"flame", "flames", "fire",
                                                  "burn",  "heat",   "temperature"};
 constexpr std::array<std::string_view, 4> kColors{"cd", "color", "colour", "albedo"};
@@ -195,7 +193,7 @@ MediumGrids mediumGrids(const std::vector<VolumeEntry>& entries) {
         return "";
     };
     MediumGrids grids;
-    // One that cannot be read is the one that is meant all the same, and reading it says why.
+    // An unreadable grid is still the one that is meant: reading it says why.
     grids.emission = firstOf(
         kFires, [](const VolumeEntry& entry) { return entry.scalar || !entry.obstacle.empty(); });
     grids.color =

@@ -17,7 +17,7 @@
 
 namespace deltasplat {
 
-void settleUnit(const std::string& where, Volume& volume) {
+void settleUnit(const std::string& where, VolumeData& volume) {
     const double millimetres = millimetresIn(volume.lengthUnit);
     if (volume.space.empty() || millimetres == 0 || millimetres == 1) return;
     scaleLengths(volume.worldFromIndex, millimetres);
@@ -25,9 +25,9 @@ void settleUnit(const std::string& where, Volume& volume) {
     requirePlacement(where, "lengths in millimetres", volume.worldFromIndex);
 }
 
-Volume placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metadata,
-                    const GridCodesOptions& options) {
-    Volume volume;
+VolumeData placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metadata,
+                        const GridCodesOptions& options) {
+    VolumeData volume;
     volume.worldFromIndex = worldFromIndexOf(map, options.where);
     const std::string space = metadata.text(kSpaceKey);
     if (space == "RAS" || space == "LPS") volume.space = space;
@@ -37,7 +37,7 @@ Volume placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metada
     return volume;
 }
 
-void settleEmpty(Volume& volume, const GridCodesOptions& options) {
+void settleEmpty(VolumeData& volume, const GridCodesOptions& options) {
     if (!std::isfinite(volume.background)) {
         const double replacement = options.reading.nanValue.value_or(0);
         options.listener.warn(options.where + ": background " + numberText(volume.background) +
@@ -47,9 +47,9 @@ void settleEmpty(Volume& volume, const GridCodesOptions& options) {
     if (volume.empty()) options.listener.warn(options.where + ": no active voxels");
 }
 
-Volume volumeOfGrid(TreeGrid grid, const GridCodesOptions& options,
-                    const VdbMetadata& fileMetadata) {
-    Volume volume = placedVolume(*grid.map, grid.metadata, options);
+VolumeData volumeOfGrid(TreeGrid grid, const GridCodesOptions& options,
+                        const VdbMetadata& fileMetadata) {
+    VolumeData volume = placedVolume(*grid.map, grid.metadata, options);
     requireMemory(options.where, double(grid.tree->leafCount()) * leafBytes<CodeTree::Leaf>());
     fillFromGrid(grid, options, volume);
     const ReadOptions& reading = options.reading;
@@ -61,8 +61,8 @@ Volume volumeOfGrid(TreeGrid grid, const GridCodesOptions& options,
     return volume;
 }
 
-std::optional<Volume> volumeOfLeaves(const VdbValues& values, const GridCodesOptions& options) {
-    Volume volume = placedVolume(values.leaves.transform(), values.metadata, options);
+std::optional<VolumeData> volumeOfLeaves(const VdbValues& values, const GridCodesOptions& options) {
+    VolumeData volume = placedVolume(values.leaves.transform(), values.metadata, options);
     if (!fillFromLeaves(values, options, volume)) return std::nullopt;
     settleEmpty(volume, options);
     return volume;

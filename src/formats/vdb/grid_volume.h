@@ -7,28 +7,25 @@
 
 namespace deltasplat {
 
-/// Makes a volume of a scalar grid: all of it but its name, and Volume::source where `options` ask
-/// for it, which then is this grid. The grid may be changed on the way.
+/// Makes a volume without name of a grid, which becomes its source if `options` ask. May change it.
 /// @param fileMetadata  goes into the source
 /// @throw as fillFromGrid; Error(kInput) for a transform that is not linear
-Volume volumeOfGrid(TreeGrid grid, const GridCodesOptions& options,
-                    const VdbMetadata& fileMetadata = {});
+VolumeData volumeOfGrid(TreeGrid grid, const GridCodesOptions& options,
+                        const VdbMetadata& fileMetadata = {});
 
-/// Makes the lengths of a patient's space millimetres, as Volume::lengthUnit has it.
-/// @throw Error(kInput) if they give voxels no place
-void settleUnit(const std::string& where, Volume& volume);
+/// Converts the lengths of a patient's space to millimetres, as Volume::lengthUnit requires.
+/// @throw Error(kInput) if the scaled transform cannot place voxels
+void settleUnit(const std::string& where, VolumeData& volume);
 
-/// Returns a volume that has its place, and no voxels.
-Volume placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metadata,
-                    const GridCodesOptions& options);
+/// Returns a volume that has its place but no voxels.
+VolumeData placedVolume(const openvdb::math::MapBase& map, const VdbMetadata& metadata,
+                        const GridCodesOptions& options);
 
-/// A background of NaN or infinity is taken as what replaces NaN, or 0, with a warning; there is
-/// one for a volume without active voxels as well.
-void settleEmpty(Volume& volume, const GridCodesOptions& options);
+/// Replaces a non-finite background by `nanValue` or 0, and warns. Warns of empty volumes, too.
+void settleEmpty(VolumeData& volume, const GridCodesOptions& options);
 
-/// Does the same with a grid whose leaves' values are still in their file; nothing where
-/// fillFromLeaves() says so. There is no source.
+/// Makes a volume without source from leaf values in a file; nothing if fillFromLeaves() fails.
 /// @throw as volumeOfGrid
-std::optional<Volume> volumeOfLeaves(const VdbValues& values, const GridCodesOptions& options);
+std::optional<VolumeData> volumeOfLeaves(const VdbValues& values, const GridCodesOptions& options);
 
 }  // namespace deltasplat

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: the sign convention of OpenVDB's level sets (Museth, VDB: High-Resolution Sparse
 // Volumes with Dynamic Topology, 2013, section 4): inactive voxels and tiles outside of the narrow
-// band are inside where they are negative.
+// band are inside the surface if they are negative.
 #include "formats/vdb/level_set_band.h"
 
 #include <openvdb/tree/ValueAccessor.h>
@@ -24,20 +24,18 @@ namespace {
 
 using openvdb::Coord;
 
-// How many voxels deep a surface needs them, and how far outside: found by trying (obliquely, a ray
-// goes 1.7 voxels deep between two that it meets).
+// Voxels needed inside and outside, found by trying: oblique rays go 1.7 voxels deep between two.
 constexpr double kDepth = 1.9;
 constexpr double kHeight = 1.5;
-// Of what is going to be cut all is shown: then gradients beside the surface must not see where
-// what fills it begins.
+// Depth of a solid, whose cut shows all inside: gradients at the surface must not see the filling.
 constexpr double kSolidDepth = 5;
-// Of what fills it: more than a voxel's values span, in whatever direction.
+// Depth of the filling's values: more than one voxel's values span in any direction.
 constexpr double kFilledDepth = 9;
-// A voxel at the end of the band is near enough to one that is needed if it is so much less deep.
+// A voxel at the end of the band is near enough to a needed voxel if it is at most this less deep.
 constexpr double kStep = 0.5;
-// What is known to be on one side is at least so much of a step away from the surface at 0.
+// Least distance from the surface at 0 of a voxel whose side is known, in steps.
 constexpr double kLeastShare = 1e-3;
-// Layers of voxels are added one behind the other; along a diagonal one is 0.58 voxels thick.
+// Layers are added one by one; a layer is 0.58 voxels thick along a diagonal.
 constexpr int kMostLayers = 12;
 
 const std::array<Coord, 6> kSides{Coord(-1, 0, 0), Coord(1, 0, 0),  Coord(0, -1, 0),
@@ -52,7 +50,7 @@ bool isAny(const LeafMask& mask) {
     return std::any_of(mask.begin(), mask.end(), [](std::uint64_t word) { return word != 0; });
 }
 
-// What lies beside a leaf's voxels, on one of kSides.
+// Returns the voxels of a leaf that touch one of kSides.
 LeafMask faceOf(const LeafMask& mask, std::size_t side) {
     constexpr std::uint64_t kFirstRow = 0xff, kFirstColumn = 0x0101010101010101;
     constexpr std::array<std::uint64_t, 6> kKept{~std::uint64_t{0}, ~std::uint64_t{0},
@@ -66,7 +64,7 @@ LeafMask faceOf(const LeafMask& mask, std::size_t side) {
     return face;
 }
 
-// Adds the voxels of a leaf that lie beside those of another, which is on one of its kSides.
+// Adds the voxels of a leaf that lie beside voxels of its neighbour on one of kSides.
 void addFrom(const LeafMask& other, std::size_t side, LeafMask& mask) {
     const LeafMask face = faceOf(other, side ^ 1);
     switch (side) {
@@ -87,7 +85,7 @@ void addFrom(const LeafMask& other, std::size_t side, LeafMask& mask) {
     }
 }
 
-// The voxels of a leaf that lie beside some of its own.
+// Returns the voxels of a leaf that lie beside some voxels of `mask`.
 LeafMask besides(const LeafMask& mask) {
     constexpr std::uint64_t kNotFirst = 0xfefefefefefefefe, kNotLast = 0x7f7f7f7f7f7f7f7f;
     LeafMask beside{};
@@ -103,7 +101,7 @@ LeafMask besides(const LeafMask& mask) {
 template <typename Tree>
 class BandCompleter {
   public:
-    // @param voxelSize  in the world, in whose units distances are
+    // @param voxelSize  in world units, which distances use as well
     BandCompleter(Tree& tree, const LevelSetSurface& surface, double voxelSize)
         : tree_(tree),
           voxelSize_(voxelSize),
@@ -111,7 +109,7 @@ class BandCompleter {
           depth_(surface.isSolid ? kSolidDepth : kDepth) {}
 
     std::uint64_t addLayers() {
-        // What lies too far away to be a volume is refused later.
+        // Voxels too far away for a volume are refused later.
         openvdb::CoordBBox box;
         constexpr int kFarthest = 1 << 30;
         if (!tree_.evalActiveVoxelBoundingBox(box) ||
@@ -123,7 +121,6 @@ class BandCompleter {
         return beside_;
     }
 
-    // Makes all that is inside active.
     void fillInside() {
         const Value deepest(isovalue_ - kFilledDepth * step_);
         for (auto value = tree_.beginValueOff(); value; ++value) {
@@ -138,19 +135,19 @@ class BandCompleter {
     using Leaf = typename Tree::LeafNodeType;
     using Accessor = openvdb::tree::ValueAccessor<const Tree>;
 
-    // Of a leaf.
+    // Voxels of a leaf that are near to voxels that may be needed.
     struct Near {
-        LeafMask toInside{};   // active voxels beside which one that is inside is needed
-        LeafMask toOutside{};  // likewise
+        LeafMask toInside{};   // active voxels that need neighbours inside
+        LeafMask toOutside{};  // active voxels that need neighbours outside
         const LeafMask& of(bool isInside) const { return isInside ? toInside : toOutside; }
     };
     struct Added {
-        openvdb::Index place;  // in its leaf
+        openvdb::Index place;
         Value value;
     };
 
-    // The most that values change from one active voxel to the next along an axis. A band that is
-    // thinner than two such steps does not show them all: then it is what distances change by.
+    // Returns the largest change from one active voxel to the next along an axis. A band thinner
+    // than two such steps does not show all changes: then a voxel's size is the least.
     double largestStep() const {
         std::vector<const Leaf*> leaves;
         tree_.getNodes(leaves);
@@ -183,7 +180,6 @@ class BandCompleter {
         return high - low < 2 * step ? std::max(step, voxelSize_) : step;
     }
 
-    // Finds the voxels that are near to what may be needed, of leaf after leaf.
     void findNear() {
         leaves_.clear();
         tree_.getNodes(leaves_);
@@ -202,7 +198,7 @@ class BandCompleter {
         });
     }
 
-    // Makes leaves of inactive voxels where some of them are needed; returns whether there are any.
+    // Adds leaves of inactive voxels where voxels are needed. Returns whether any was missing.
     bool addLeaves() {
         std::vector<Coord> missing;
         const Accessor accessor(tree_);
@@ -221,7 +217,7 @@ class BandCompleter {
         return !missing.empty();
     }
 
-    // Returns whether there was anything to add.
+    // Returns whether the layer has any voxels.
     bool addLayer() {
         findNear();
         if (addLeaves()) findNear();
@@ -231,7 +227,7 @@ class BandCompleter {
             for (std::size_t i = begin; i < end; ++i) added[i] = addedTo(i, accessor);
         });
         bool isAnyAdded = false;
-        // What fills it is not remarkable.
+        // Voxels that only fill the inside are not counted.
         const double deepest = depth_ > kDepth ? isovalue_ - kDepth * step_ : -INFINITY;
         for (std::size_t i = 0; i < leaves_.size(); ++i) {
             for (const Added& one : added[i]) {
@@ -243,7 +239,7 @@ class BandCompleter {
         return isAnyAdded;
     }
 
-    // Returns what becomes active in a leaf.
+    // Returns the voxels to activate in a leaf.
     std::vector<Added> addedTo(std::size_t i, const Accessor& accessor) const {
         const Leaf& leaf = *leaves_[i];
         LeafMask toInside = besides(near_[i].toInside), toOutside = besides(near_[i].toOutside);
@@ -270,8 +266,7 @@ class BandCompleter {
         return added;
     }
 
-    // Returns the value of a voxel that is not active as its neighbours' values go on, if it is
-    // needed.
+    // Returns a value for an inactive voxel that continues its neighbours' values, if needed.
     std::optional<Value> valueAt(const Coord& place, bool isInside,
                                  const Accessor& accessor) const {
         double sum = 0, slopes = 0, mostGrown = 0;
@@ -290,9 +285,9 @@ class BandCompleter {
         if (count == 0) return {};
         const double slope = slopes > 0 ? slopes / count : step_;
         double value = sum / count;
-        // Where values that go on contradict a sign, they end: a volume's own end is no surface.
-        // Nor does what lies outside go on along the surface: away from one, values grow by more
-        // than half of their slope towards some voxel's side.
+        // Values end where they would contradict their sign: a volume's own end is no surface.
+        // Outside they do not continue along the surface either: away from a surface, values grow
+        // by more than half of their slope towards some side of a voxel.
         if (!isInside && (value < 0 || mostGrown < slope / 2)) return {};
         const double least = kLeastShare * step_;
         value = isInside ? std::min(value, -least) : std::max(value, least);
@@ -301,8 +296,8 @@ class BandCompleter {
         return Value(value);
     }
 
-    // How values grow from an active voxel to the next along each axis. Along one where no other is
-    // active it is what the others leave of the largest step there is.
+    // Returns the growth of values from an active voxel along each axis. An axis without active
+    // neighbours gets what the other axes leave of the largest step.
     openvdb::Vec3d gradientAt(const Coord& place, double here, const Accessor& accessor) const {
         openvdb::Vec3d gradient(0);
         std::array<int, 3> signs{};
@@ -335,9 +330,9 @@ class BandCompleter {
     double isovalue_;
     double depth_;
     double step_ = 0;
-    std::uint64_t beside_ = 0;  // of those added, which any surface needs
+    std::uint64_t beside_ = 0;  // added voxels that any surface needs
     std::vector<Leaf*> leaves_;
-    std::vector<Near> near_;  // of each
+    std::vector<Near> near_;  // of each leaf
 };
 
 }  // namespace

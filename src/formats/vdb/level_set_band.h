@@ -8,12 +8,11 @@
 
 namespace deltasplat {
 
-/// Makes those voxels of a level set active that a surface of it needs and that its band has not:
-/// a voxel that the surface cuts lets through what lies behind, which has to be there. What is not
-/// active is inside where it is negative, as OpenVDB has it. How far, is continued from the band.
-/// Where the band reaches far enough to both sides nothing changes. Deterministic.
+/// Activates the voxels of a level set that a surface needs but the band lacks, because a cut voxel
+/// shows the voxels behind. Inactive negative voxels are inside, as in OpenVDB. New distances
+/// continue the band. A band that is wide enough on both sides stays unchanged. Deterministic.
 /// @param grid  of floats or doubles
-/// @return how many voxels beside the surface became active, those that only fill it not counted
+/// @return number of new voxels beside the surface; those that only fill the inside do not count
 std::uint64_t completeBand(TreeGrid& grid, const LevelSetSurface& surface);
 
 }  // namespace deltasplat

@@ -25,7 +25,7 @@ bool unpackZip(std::span<const char> chunk, std::span<char> values, std::size_t 
 
 namespace {
 
-// Takes what is stored from the front of some bytes.
+// Reads fields from the front of some bytes.
 class Front {
   public:
     explicit Front(std::span<const char> bytes) : rest_(bytes) {}
@@ -71,7 +71,7 @@ std::optional<PackedValues> packedValues(std::span<const char> bytes,
     }
     std::int64_t packed = 0;
     if (!front.take(packed)) return std::nullopt;
-    // Stored as they are, with the size's sign turned.
+    // A negative size marks values that are not packed.
     const std::uint64_t stored = packed > 0 ? std::uint64_t(packed) : size;
     if (front.rest().size() != stored || (packed <= 0 && packed != -std::int64_t(size)))
         return std::nullopt;
@@ -79,14 +79,14 @@ std::optional<PackedValues> packedValues(std::span<const char> bytes,
 }
 
 bool unpackBlosc(std::span<const char> chunk, std::span<char> values, std::size_t size) {
-    // The decoder believes what a chunk says of its sizes, in the second and fourth of its words.
+    // The decoder trusts the sizes in the second and fourth word of a chunk.
     std::array<std::uint32_t, 4> words;
     if (chunk.size() < sizeof words) return false;
     std::memcpy(words.data(), chunk.data(), sizeof words);
     if (words[1] != size || words[3] != chunk.size()) return false;
     if (size == 0) return true;
-    // What does not pack stands behind these words as it is, which the third byte says (the first
-    // is the format's version): Blosc, which would be loaded first, is not needed for it.
+    // The third byte flags values that are only copied behind these words; the first byte is the
+    // format's version. Copying them here saves loading Blosc.
     constexpr std::uint32_t kIsStored = std::uint32_t{BLOSC_MEMCPYED} << 16;
     if ((words[0] & kIsStored) != 0 && (words[0] & 0xff) == BLOSC_VERSION_FORMAT) {
         if (chunk.size() != sizeof words + size || values.size() < size) return false;
@@ -113,7 +113,7 @@ namespace {
 template <typename T>
 using Traits = openvdb::VecTraits<T>;
 
-// Returns the value that OpenVDB takes for the opposite of one.
+// Returns OpenVDB's opposite of a value.
 template <typename T>
 T opposite(const T& value) {
     if constexpr (Traits<T>::IsVec) {
@@ -129,13 +129,13 @@ T opposite(const T& value) {
     }
 }
 
-// What inactive places hold where values of active ones are all that is stored.
+// Values of inactive places in a node that stores active values alone.
 template <typename T>
 struct InactivePlaces {
     std::array<T, 2> values;
-    std::span<const char> second;  // a bit for each place that has the second; empty: none has
+    std::span<const char> second;  // a bit per place that has the second value; empty: no place has
 
-    // @param bytes  whose length has been looked at
+    // @param bytes  checked to be long enough
     InactivePlaces(std::span<const char> bytes, std::size_t maskBytes, T background,
                    const VdbValueFormat& format) {
         using namespace openvdb::io;
@@ -158,7 +158,6 @@ struct InactivePlaces {
     }
 };
 
-// Turns what is stored into values.
 template <typename T>
 void widen(const char* stored, std::size_t count, bool areHalves, T* values) {
     if (!areHalves) {
@@ -193,7 +192,7 @@ bool unpackAll(std::span<const char> bytes, std::span<const std::uint64_t> mask,
     widen(stored.data(), packed->count, format.areHalves(), values);
     const std::size_t places = 64 * mask.size();
     if (packed->count == places) return true;
-    // From the last on, each moves to a place that is not before its own.
+    // Runs backwards: each value moves to its own place or a later one.
     const InactivePlaces<T> inactive(bytes, mask.size_bytes(), background, format);
     std::size_t next = packed->count;
     for (std::size_t place = places; place-- > 0;) {
@@ -225,7 +224,7 @@ std::int64_t appendBlosc(const void* values, std::size_t bytes, std::string& to)
     const std::size_t place = to.size();
     const std::size_t most = bytes + BLOSC_MAX_OVERHEAD;
     to.resize(place + most);
-    // What OpenVDB asks for, whatever the size of a value is.
+    // OpenVDB's parameters, whatever the size of a value.
     constexpr int kLevel = 9;
     constexpr std::size_t kTypeSize = 4;
     const int size = blosc_compress_ctx(kLevel, BLOSC_SHUFFLE, kTypeSize, bytes, values,

@@ -21,17 +21,16 @@
 
 namespace deltasplat {
 
-/// Unpacks what zlib has packed; returns whether it is whole, by its checksum, and `size` bytes.
-/// OpenVDB 10 asks for the size alone.
-/// @param values  takes as many at least
+/// Unpacks a zlib chunk. Returns whether size and checksum are right; OpenVDB 10 checks only size.
+/// @param values  room for at least `size` bytes
 bool unpackZip(std::span<const char> chunk, std::span<char> values, std::size_t size);
 
-/// What unpacking takes behind what is unpacked: OpenVDB 10 asks for 16.
+/// Spare room for unpacking behind the values: OpenVDB 10 asks for 16 bytes.
 inline constexpr std::size_t kUnpackBytes = 64;
 
-/// Returns a value that stands alone in a .vdb file: the background, a tile of the root, ...
-/// @tparam T       the grid's value type; for bools the std::uint8_t that one is stored as
-/// @param  stored  of the format's `alone` bytes
+/// Returns a value that a .vdb file stores by itself: the background, a tile of the root, ...
+/// @tparam T       the grid's value type; std::uint8_t for bools
+/// @param  stored  `format.alone` bytes
 template <typename T>
 T valueAlone(const char* stored, const VdbValueFormat& format) {
     if constexpr (std::is_floating_point_v<T>) {
@@ -46,65 +45,57 @@ T valueAlone(const char* stored, const VdbValueFormat& format) {
     return value;
 }
 
-/// The values of a node of a .vdb file, as its bytes have them.
 struct PackedValues {
-    std::uint32_t count;  ///< of all places of the node, or of the active ones
+    std::uint32_t count;  ///< of all places of the node, or of its active places
     std::span<const char> data;
     bool isPacked;
 };
 
-/// @param bytes  from what follows the node's masks to its end
-/// @param mask   which of its places are active
-/// @return nothing if there are more bytes or fewer
+/// @param bytes  the node's bytes behind its masks
+/// @param mask   active places of the node
+/// @return nothing if the size of `bytes` is wrong
 std::optional<PackedValues> packedValues(std::span<const char> bytes,
                                          std::span<const std::uint64_t> mask,
                                          const VdbValueFormat& format);
 
-/// Writes the values as they are stored; returns whether they are whole.
-/// @param values  takes them and kUnpackBytes
+/// Writes the values as stored. Returns whether they are intact.
+/// @param values  room for the values and kUnpackBytes
 bool unpack(const PackedValues& packed, const VdbValueFormat& format, std::span<char> values);
 
-/// Writes the values of all places of a node, inactive ones too, as the grid has them; returns
-/// whether they are whole.
-/// @tparam T      the grid's value type: a number, or openvdb::Vec3f, Vec3d or Vec3i of them; for
-///                bools the std::uint8_t that one is stored as
+/// Writes all values of a node in the grid's type, inactive ones too. Returns whether it is intact.
+/// @tparam T      number, openvdb::Vec3f, Vec3d or Vec3i; std::uint8_t for bools
 /// @param bytes   as packedValues
-/// @param stored  room that is kept from node to node
-/// @param values  one for each place
+/// @param stored  scratch room, reused from node to node
+/// @param values  room for one value per place
 template <typename T>
 bool unpackAll(std::span<const char> bytes, std::span<const std::uint64_t> mask,
                const VdbValueFormat& format, T background, std::vector<char>& stored, T* values);
 
-/// Unpacks a chunk of Blosc's; returns whether it is whole, and of `size` bytes.
-/// @param values  takes them and kUnpackBytes
+/// Unpacks a Blosc chunk. Returns whether it is intact and has `size` bytes.
+/// @param values  room for the values and kUnpackBytes
 bool unpackBlosc(std::span<const char> chunk, std::span<char> values, std::size_t size);
 
-/// Appends the bytes of a number, or of several.
 template <typename T>
 void appendBytes(const T& value, std::string& to) {
     to.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// Appends a chunk of Blosc's as OpenVDB makes them; returns its bytes, 0 if it cannot be made.
+/// Appends a Blosc chunk as OpenVDB makes it. Returns its size, or 0 on failure.
 std::int64_t appendBlosc(const void* values, std::size_t bytes, std::string& to);
 
-/// Appends values packed by Blosc, or as they are where that makes them no smaller: their number of
-/// bytes, negative if they are not packed, and they themselves.
-/// @return how many bytes they have
+/// Appends a size and the values, packed by Blosc; the size is negative if packing saves nothing.
+/// @return number of bytes of the values
 std::int64_t appendPacked(const void* values, std::size_t bytes, std::string& to);
 
-/// Appends values as they are stored.
-/// @param half  whether they are halves
-/// @return what OpenVDB notes of their size
+/// Appends values, or halves if `half` is set, as they are. Returns the size that OpenVDB notes.
 template <typename T>
 std::int64_t appendStored(const T* values, std::size_t count, bool half, std::string& to) {
     constexpr std::int64_t kSize = sizeof(std::int64_t);
-    if (half && count == 0) return kSize;  // which is noted, but not there
+    if (half && count == 0) return kSize;  // noted, although no size is stored
     return kSize + appendPacked(values, count * sizeof(T), to);
 }
 
-/// Appends values, as halves if `half` says so and they are real.
-/// @return as appendStored
+/// Appends values as appendStored does; real ones as halves if `half` is set.
 template <typename T>
 std::int64_t appendValues(const T* values, std::size_t count, bool half, std::string& to) {
     using ToHalf = openvdb::io::RealToHalf<T>;
@@ -114,7 +105,7 @@ std::int64_t appendValues(const T* values, std::size_t count, bool half, std::st
     return appendStored(halves.get(), count, true, to);
 }
 
-/// Calls use(i) for the bits of a mask that are set.
+/// Calls use(i) for each set bit of a mask.
 template <typename Mask, typename Use>
 void forBits(const Mask& mask, const Use& use) {
     for (openvdb::Index word = 0; word < Mask::WORD_COUNT; ++word) {
@@ -123,14 +114,14 @@ void forBits(const Mask& mask, const Use& use) {
     }
 }
 
-/// What "file_delayed_load" has of a leaf.
+/// Notes of "file_delayed_load" on one leaf.
 struct LeafNote {
     std::int8_t kind;
     std::int64_t size;
 };
 
-/// Appends the values of a node, inactive ones only where they are of more than two kinds.
-/// @param values    of all of its places
+/// Appends the values of a node; inactive values only if there are more than two different ones.
+/// @param values    of all places
 /// @param children  places of child nodes, which have no values
 template <typename T, typename Mask>
 LeafNote appendNode(const T* values, const Mask& active, const Mask& children, const T& background,

@@ -32,7 +32,7 @@ namespace {
 constexpr const char* kScalarGrid =
     "a scalar grid (float, double, half, int32, int64, bool or mask)";
 
-// A grid, or one part of a vector grid.
+// A grid or one part of a vector grid.
 struct ChosenGrid {
     const VdbGrid* grid;
     std::optional<int> part = {};
@@ -42,7 +42,7 @@ struct ChosenGrid {
     }
 };
 
-// Reading and unpacking the file is by far the longer part of the work on a grid.
+// Share of the progress for reading and unpacking the file, by far the longer part.
 constexpr double kReadShare = 0.8;
 
 std::string listOf(const std::vector<VdbGrid>& grids) {
@@ -70,8 +70,8 @@ const VdbGrid* findByName(const std::vector<VdbGrid>& grids, const std::string& 
     return found == grids.end() ? nullptr : &*found;
 }
 
-// Finds "density[1]" by its unique name or as OpenVDB shows it, "density" as the first of that
-// name, and "Cd.x" as a part of a vector grid.
+// Finds "density[1]" by its unique name or as OpenVDB shows it, "density" as the first of the name,
+// and "Cd.x" as a part of a vector grid.
 ChosenGrid findGrid(const std::string& file, const std::vector<VdbGrid>& grids,
                     const std::string& name) {
     const VdbGrid* found = findByName(grids, name);
@@ -108,18 +108,17 @@ std::vector<ChosenGrid> chooseGrids(const std::string& where, const VdbFile& fil
     return {{preferred}};
 }
 
-// Reads a grid as OpenVDB does.
-Volume readWholeGrid(const VdbFile& file, const ChosenGrid& chosen, const std::string& where,
-                     const ReadOptions& options, const Listener& listener) {
+VolumeData readWholeGrid(const VdbFile& file, const ChosenGrid& chosen, const std::string& where,
+                         const ReadOptions& options, const Listener& listener) {
     const VdbGrid& grid = *chosen.grid;
     Listener reading;
     reading.progress = [&](double share) { listener.report(kReadShare * share); };
     TreeGrid loaded = file.read(grid, reading);
     if (chosen.part) loaded = gridOfPart(loaded, *chosen.part);
     const GridCodesOptions coding{listener, where, grid.valueType(), options};
-    Volume volume;
+    VolumeData volume;
     if (isDeltaGrid(loaded)) {
-        // What cannot be placed is refused before it is decoded.
+        // Refuses a bad transform before the long decoding.
         worldFromIndexOf(*loaded.map, where);
         Listener decoding = listener;
         decoding.progress = [&](double share) {
@@ -137,7 +136,7 @@ bool isLevelSet(const VdbMetadata& metadata) {
     return gridClassOf(metadata) == kLevelSetClass;
 }
 
-// Whether a grid may be read leaf by leaf: of which nothing but its codes is wanted.
+// Whether a grid may be read leaf by leaf, because only its codes are wanted.
 bool mayReadLeaves(const VdbFile& file, const VdbGrid& grid, const ReadOptions& options) {
     // Codes of halves are exact.
     const bool mayNeedSource = options.keepInexact && grid.valueType() != "half";
@@ -147,18 +146,18 @@ bool mayReadLeaves(const VdbFile& file, const VdbGrid& grid, const ReadOptions& 
     return !(changes && isLevelSet(metadata)) && !isDeltaGrid(grid.type, metadata);
 }
 
-// Reads such a grid; nothing where that cannot be.
-std::optional<Volume> readGridLeaves(const VdbFile& file, const VdbGrid& grid,
-                                     const std::string& where, const ReadOptions& options,
-                                     const Listener& listener) {
-    constexpr double kFindShare = 0.2;  // of finding where leaves lie
+// Returns nothing if the grid must be read as a whole.
+std::optional<VolumeData> readGridLeaves(const VdbFile& file, const VdbGrid& grid,
+                                         const std::string& where, const ReadOptions& options,
+                                         const Listener& listener) {
+    constexpr double kFindShare = 0.2;  // for finding leaves
     for (const auto how : {VdbFile::Find::kByNotes, VdbFile::Find::kByWalking}) {
         std::optional<VdbValues> values;
         try {
             if (!mayReadLeaves(file, grid, options)) return std::nullopt;
             values = file.readValues(grid, how, partOf(listener, 0, kFindShare));
         } catch (const Error& error) {
-            // What is wrong is said by who reads the grid as a whole.
+            // Reading the grid as a whole reports the error.
             if (error.code() != ErrorCode::kInput) throw;
         }
         if (!values) return std::nullopt;
@@ -166,7 +165,7 @@ std::optional<Volume> readGridLeaves(const VdbFile& file, const VdbGrid& grid,
             const Listener unpacking = partOf(listener, kFindShare, 1);
             return volumeOfLeaves(*values, {unpacking, where, grid.valueType(), options});
         } catch (const DamagedLeaves&) {
-            // Or the file's notes are.
+            // The file's notes may be wrong instead.
             if (!values->byNotes) throw;
         }
     }
@@ -182,13 +181,13 @@ Volume readGrid(const VdbFile& file, const ChosenGrid& chosen, const std::string
         told = std::max(told, share);
         listener.report(told);
     };
-    std::optional<Volume> volume;
+    std::optional<VolumeData> volume;
     if (!chosen.part) volume = readDeltaBlocks(file, grid, where, options, onward);
     if (volume) settleEmpty(*volume, {listener, where, grid.valueType(), options});
     if (!volume && !chosen.part) volume = readGridLeaves(file, grid, where, options, onward);
     if (!volume) volume = readWholeGrid(file, chosen, where, options, onward);
     volume->name = chosen.name();
-    return std::move(*volume);
+    return volumeOfFile(where, std::move(*volume));
 }
 
 // Reads grids one after the other and hands them to a visitor.
@@ -197,7 +196,7 @@ class GridReader {
     GridReader(const VdbFile& file, const ReadOptions& options, const VolumeVisitor& visitor)
         : file_(file), options_(options), visitor_(visitor) {}
 
-    // @param amongOthers  whether it is one of several that nobody asked for by name
+    // @param amongOthers  whether the grid is one of several that were not named
     void read(const ChosenGrid& grid, const std::string& where, bool amongOthers,
               const Listener& listener) {
         std::optional<Volume> volume = tryRead(grid, where, amongOthers, listener);
@@ -206,7 +205,7 @@ class GridReader {
         if (visitor_.volume) visitor_.volume(std::move(*volume));
     }
 
-    // A file of nothing but what is passed over is no valid one.
+    // Refuses a file all of whose grids were passed over.
     void finish() {
         if (!anyTold_ && passedOver_)
             std::visit([this](const auto& error) { refuse(error); }, *passedOver_);
@@ -218,7 +217,7 @@ class GridReader {
         try {
             return readGrid(file_, grid, where, options_, listener);
         } catch (const NotFinite& error) {
-            // Solvers leave undefined distances in caches, which are of use to nobody else.
+            // Solvers leave undefined distances in caches, which nobody else can use.
             if (!amongOthers || !visitor_.other || !isLevelSet(file_.metadata(*grid.grid))) {
                 refuse(error);
             } else {
@@ -261,7 +260,7 @@ std::string whereOf(const std::filesystem::path& path, const ChosenGrid& grid) {
     return path.string() + ": grid \"" + grid.name() + "\"";
 }
 
-// Says which grids might have been meant, if somebody knew what they are.
+// Warns of grids of unknown type that might have been meant.
 void warnOfUnknown(const std::filesystem::path& path, const VdbFile& file, const ChosenGrid& chosen,
                    const Listener& listener) {
     if (chosen.grid->plainName() == "density") return;
@@ -273,7 +272,7 @@ void warnOfUnknown(const std::filesystem::path& path, const VdbFile& file, const
                   ", of types that are not known");
 }
 
-// Says which of several grids is read, unless somebody has asked for it.
+// Warns which of several grids is read, unless the caller named it.
 void warnOfOthers(const std::filesystem::path& path, const VdbFile& file, const ChosenGrid& chosen,
                   const ReadOptions& options, const Listener& listener) {
     if (options.gridName) return;
@@ -285,7 +284,7 @@ void warnOfOthers(const std::filesystem::path& path, const VdbFile& file, const 
                   std::to_string(scalars) + " scalar grids (`gridName` chooses another)");
 }
 
-// Returns nothing if it has to be read as a whole.
+// Returns nothing if the grid must be read as a whole.
 std::optional<Volume> packedVolume(const VdbFile& file, const ChosenGrid& chosen,
                                    const std::string& where, const ReadOptions& options,
                                    const Listener& listener) {
@@ -295,7 +294,7 @@ std::optional<Volume> packedVolume(const VdbFile& file, const ChosenGrid& chosen
     std::optional<VdbFile::Packed> packed = file.readPacked(grid);
     if (!packed) return std::nullopt;
     const GridCodesOptions coding{listener, where, grid.valueType(), options};
-    Volume volume = placedVolume(packed->grid.leaves.transform(), packed->metadata, coding);
+    VolumeData volume = placedVolume(packed->grid.leaves.transform(), packed->metadata, coding);
     const auto background = std::visit(
         [](const auto& nodes) { return double(nodes->background()); }, packed->grid.nodes);
     describeGrid(background, packed->metadata, coding, volume);
@@ -305,7 +304,7 @@ std::optional<Volume> packedVolume(const VdbFile& file, const ChosenGrid& chosen
         SourceGrid{{}, {}, std::make_shared<const PackedGrid>(std::move(packed->grid))});
     settleEmpty(volume, coding);
     volume.name = chosen.name();
-    return volume;
+    return volumeOfFile(where, std::move(volume));
 }
 
 }  // namespace
@@ -323,12 +322,12 @@ std::optional<Volume> readPackedVolume(const std::filesystem::path& path,
         const Listener noting{{}, [&](const std::string& text) { warnings.push_back(text); }};
         warnOfOthers(path, file, chosen, options, noting);
         auto volume = packedVolume(file, chosen, whereOf(path, chosen), options, noting);
-        // What is read as a whole warns by itself.
+        // Reading as a whole repeats the warnings.
         for (const std::string& text : warnings)
             if (volume) listener.warn(text);
         return volume;
     } catch (const Error& error) {
-        // What is wrong is said by who reads the grid as a whole.
+        // Reading the grid as a whole reports the error.
         if (error.code() != ErrorCode::kInput) throw;
         return std::nullopt;
     }

@@ -30,16 +30,15 @@
 namespace deltasplat {
 namespace {
 
-// The first version that says for each grid how it is compressed, from 2013.
+// The first version that states the compression of each grid, from 2013.
 constexpr std::uint32_t kOldestVersion = openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION;
-// The newest one, of OpenVDB 13: it differs from 224 in that there may be grids of halves. What
-// comes after it has another layout.
+// The newest version (OpenVDB 13) adds only grids of halves to 224; later ones differ in layout.
 constexpr std::uint32_t kNewestVersion = 225;
 constexpr std::uint64_t kUuidBytes = 36;
 
 constexpr std::array<const char*, 7> kScalarTypes{"float", "double", kHalfType, "int32",
                                                   "int64", "bool",   "mask"};
-// Numbers of types that are not read: OpenVDB's names of some, and the compiler's of others.
+// Number types that cannot be read: OpenVDB's names of some, the compiler's names of others.
 constexpr std::array<std::string_view, 15> kOtherNumbers{
     "int8", "uint8", "int16", "uint16", "uint32", "uint64", "a", "h",
     "s",    "t",     "j",     "l",      "m",      "x",      "y"};
@@ -92,16 +91,15 @@ VdbGrid readDescriptor(VdbBytes& bytes, bool hasOffsets) {
     return grid;
 }
 
-// For messages.
 std::string whereOf(const std::filesystem::path& file, const VdbGrid& grid) {
     return file.string() + ": grid \"" + grid.name + "\"";
 }
 
-// Reads a transform; whatever goes wrong in OpenVDB becomes one kind of error.
+// Reads a transform and turns any failure of OpenVDB into one kind of error.
 openvdb::math::MapBase::ConstPtr takeMap(std::istream& stream, const std::string& where) {
     std::string got;
     try {
-        // Without this OpenVDB goes on with zeros after the end, for as long as a count says.
+        // Otherwise OpenVDB reads zeros past the end, for as long as a count says.
         stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
         return readMap(stream);
     } catch (const Error&) {
@@ -116,10 +114,10 @@ openvdb::math::MapBase::ConstPtr takeMap(std::istream& stream, const std::string
     throw Error(ErrorCode::kInput, where, got, "a sound OpenVDB grid");
 }
 
-// Returns the type of the transform that comes next, and leaves `bytes` before it.
+// Returns the type of the next transform, and leaves `bytes` before it.
 std::string mapTypeAt(VdbBytes& bytes) {
     const std::uint64_t map = bytes.position();
-    std::string type = bytes.text(256);  // a length that OpenVDB would trust
+    std::string type = bytes.text(256);  // OpenVDB would trust any length
     bytes.seek(map);
     return type;
 }
@@ -140,15 +138,15 @@ void requireMapType(const std::string& type, const std::string& where) {
     throw UnreadableGrid(where, "a " + printable(type) + " transform", "one that OpenVDB 10 knows");
 }
 
-// What stands before a grid's tree.
+// The part of a grid before its tree.
 struct GridHead {
     VdbMetadata metadata;
-    VdbRange leafSizes;  // OpenVDB's "file_delayed_load"; empty: none
+    VdbRange leafSizes;  // "file_delayed_load"; may be empty
     openvdb::math::MapBase::ConstPtr transform;
     VdbValueFormat format;
 };
 
-// Reads up to the tree. The transform's own fields have no sizes: reading it says where it ends.
+// Reads up to the tree. A transform stores no size: only reading it shows its end.
 GridHead readHead(VdbBytes& bytes, const VdbGrid& grid, const std::filesystem::path& file) {
     constexpr std::uint64_t kMostMapBytes = 4096;
     GridHead head;
@@ -175,7 +173,7 @@ void requireEnd(const VdbBytes& bytes, const VdbGrid& grid) {
                       std::to_string(grid.end));
 }
 
-// Reads up to the tree, which may be another grid's.
+// Reads the head of a grid whose tree may be another grid's.
 GridHead readHeads(VdbBytes& bytes, const VdbGrid& grid, const VdbGrid& owner,
                    const std::filesystem::path& file) {
     GridHead head = readHead(bytes, grid, file);
@@ -191,9 +189,8 @@ GridHead readHeads(VdbBytes& bytes, const VdbGrid& grid, const VdbGrid& owner,
     return head;
 }
 
-// Finds where leaves lie by what the file notes of their sizes; returns whether it does, and they
-// end where the grid does. A note may be wrong all the same.
-// @param bytes  at the first leaf, which they are left at
+// Places leaves by the file's size notes. Returns whether these exist and end where the grid does.
+// @param bytes  at the first leaf; stays there
 bool placeBySizes(VdbBytes& bytes, const GridHead& head, std::uint64_t end,
                   std::vector<VdbLeaf>& leaves, const std::string& where) {
     constexpr std::uint64_t kMaskBytes = 64;
@@ -230,7 +227,7 @@ bool VdbGrid::isScalar() const {
     return false;
 }
 
-// What tells grids of one name apart stands behind this in the unique one.
+// Separates a grid's name from the suffix that makes it unique.
 constexpr char kNameEnd = '\x1e';
 
 std::string VdbGrid::plainName() const {
@@ -278,8 +275,8 @@ void VdbFile::readDirectory() {
     findOwners();
 }
 
-// OpenVDB numbers grids of one name, and those without a name even where there is but one. Not
-// every writer does, and another may be named "density[0]": then all of a name are numbered anew.
+// OpenVDB numbers grids of the same name, and even a single grid without a name. Other writers do
+// not, and another grid may be named "density[0]": then all grids of the name get new numbers.
 void VdbFile::nameGrids() {
     std::map<std::string, std::vector<VdbGrid*>> named;
     for (VdbGrid& grid : grids_) named[grid.plainName()].push_back(&grid);
@@ -327,16 +324,16 @@ VdbFile::Summary VdbFile::summary(const VdbGrid& grid, VdbBytes& bytes) const {
     return summary;
 }
 
-// A file written as a stream says nowhere how long its grids are.
+// Streamed files do not state where their grids end.
 void VdbFile::findEnd(VdbBytes& bytes, VdbGrid& grid) const {
     const GridHead head = readHead(bytes, grid, file_);
     if (grid.parentName.empty()) walkTree(bytes, head.format);
     grid.end = bytes.position();
 }
 
-// Finds the grid whose voxels each grid has, which may be itself.
+// Finds the grid whose voxels each grid has, possibly its own.
 void VdbFile::findOwners() {
-    std::map<std::string_view, std::size_t> owners;  // the first of each name
+    std::map<std::string_view, std::size_t> owners;  // the first grid of each name
     for (std::size_t i = 0; i < grids_.size(); ++i)
         if (grids_[i].parentName.empty()) owners.emplace(grids_[i].uniqueName, i);
     for (std::size_t i = 0; i < grids_.size(); ++i) {
@@ -346,7 +343,7 @@ void VdbFile::findOwners() {
             grid.owner = i;
         } else if (found != owners.end()) {
             grid.owner = found->second;
-            // Voxels that are shared are stored as the grid that has them says.
+            // The owner decides how shared voxels are stored.
             grid.half = grids_[found->second].half;
         }
     }
@@ -362,18 +359,17 @@ const VdbGrid& VdbFile::ownerOf(const VdbGrid& grid) const {
                 "a sound .vdb file");
 }
 
-// A grid, none of whose values but the background has been read.
+// A grid whose background is read, but no other value.
 struct VdbFile::Found {
-    std::string where;  // for messages
+    std::string where;
     GridHead head;
     VdbTreeSize size;
-    VdbTreePlaces places;          // but for those of leaves
-    std::vector<char> background;  // as it is stored
+    VdbTreePlaces places;          // without those of leaves
+    std::vector<char> background;  // as stored
     std::shared_ptr<const FileBytes> file;
     VdbLeaves leaves;
-    bool byNotes;  // whether leaves lie where the file notes them
+    bool byNotes;  // whether leaves were placed by the file's notes
 
-    // Returns the background of a grid of numbers.
     VdbValues::Number number() const {
         const auto as = [&]<typename T>(T) -> VdbValues::Number {
             return valueAlone<T>(background.data(), head.format);
@@ -384,8 +380,8 @@ struct VdbFile::Found {
     }
 };
 
-// Returns nothing if notes are asked for and there are none.
-// @param listener  hears how far the file is read, or passed over
+// @return nothing if notes are asked for but missing
+// @param listener  hears how far the file is read or skipped
 std::optional<VdbFile::Found> VdbFile::find(const VdbGrid& grid, Find how,
                                             const Listener& listener) const {
     const std::string where = whereOf(file_, grid);

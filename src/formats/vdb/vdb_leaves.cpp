@@ -23,14 +23,14 @@ std::uint32_t countOf(const VdbLeaves::Mask& mask) {
     return active;
 }
 
-// Takes a leaf's mask; returns whether it is the leaf's.
+// Takes a mask from a leaf's bytes. Returns whether its sum is right.
 bool takeMask(const VdbLeaf& leaf, std::span<const char> bytes, VdbLeaf::Mask& mask) {
     if (bytes.size() < sizeof mask) return false;
     std::memcpy(mask.data(), bytes.data(), sizeof mask);
     return VdbLeaf::sumOf(mask) == leaf.maskSum;
 }
 
-// Returns nothing if the bytes are not those of the leaf, from the first to the last.
+// Returns nothing if the bytes are not those of the leaf, from first to last.
 std::optional<PackedValues> valuesOf(const VdbLeaf& leaf, std::span<const char> bytes,
                                      const VdbValueFormat& format, VdbLeaf::Mask& mask) {
     if (!takeMask(leaf, bytes, mask)) return std::nullopt;
@@ -59,10 +59,9 @@ VdbLeaves::VdbLeaves(std::shared_ptr<const FileBytes> file, std::vector<VdbLeaf>
       format_(format),
       transform_(std::move(transform)) {}
 
-// Reads a leaf, and those that are asked for next.
-// @param behind  the first leaf that is not going to be
+// Reads a leaf and the following leaves before `behind`, which are asked for next.
 bool VdbLeaves::readRun(const VdbLeaf& leaf, VdbRun& run, std::size_t behind) const {
-    // Sound leaves are far from it.
+    // Far more than sound leaves have.
     constexpr std::uint64_t kMostBytes = std::uint64_t{4} << 20;
     const auto first = std::size_t(&leaf - leaves_.data());
     const std::size_t last = std::min({leaves_.size(), behind, (first / kRun + 1) * kRun}) - 1;
@@ -88,14 +87,14 @@ std::optional<std::span<const Stored>> VdbLeaves::activeValues(const VdbLeaf& le
     const auto packed = valuesOf(leaf, *bytes, format_, mask);
     if (!packed) return std::nullopt;
     const std::uint32_t active = countOf(mask);
-    // What nobody sees must be whole, too.
+    // Values that no one sees must be intact, too.
     if (active == 0 && !packed->isPacked) return std::span<const Stored>{};
     auto& values = room.values;
     if (!unpack(*packed, format_, {reinterpret_cast<char*>(values.data()), sizeof values}))
         return std::nullopt;
     std::size_t kept = active;
     if (packed->count != active) {
-        // All values are there.
+        // Values of inactive voxels are stored as well.
         kept = 0;
         for (std::size_t x = 0; x < mask.size(); ++x) {
             for (std::uint64_t rest = mask[x]; rest != 0; rest &= rest - 1)
@@ -154,12 +153,12 @@ template bool VdbLeaves::allValues(const VdbLeaf&, openvdb::Vec3i, std::size_t, 
 
 namespace {
 
-// OpenVDB packs no less than this: shorter arrays have zeros behind them.
+// OpenVDB packs no less than this: shorter arrays are padded with zeros.
 constexpr std::size_t kLeastPacked = 128;
 
-// Takes an array from `place` on as OpenVDB writes one: how many bytes it is packed in, 0 if it is
-// not, and those. Moves `place` behind it; returns whether it is there.
-// @param values  of `bytes`, or kLeastPacked if that is more, and room for unpacking
+// Takes an array as OpenVDB writes it: its packed size, or 0 if it is not packed, then its bytes.
+// Moves `place` behind it. Returns whether it is intact.
+// @param values  room for max(`bytes`, kLeastPacked), and for unpacking
 bool takeArray(const std::string& stored, std::size_t bytes, std::span<char> values,
                std::uint64_t& place) {
     std::uint32_t packed = 0;
@@ -199,7 +198,7 @@ std::optional<std::vector<std::uint64_t>> leafSizesOf(const std::string& stored,
     if (!take(kinds) || !take(sizes)) return std::nullopt;
     for (std::size_t i = 0; i < leaves; ++i) {
         if (sizes[i] > std::uint64_t{1} << 20) return std::nullopt;
-        // A byte that says what inactive values are like, those, and which voxel has which.
+        // A byte for the kind of inactive values, these values, and the mask that assigns them.
         sizes[i] += 1 + format.inactiveBytes(kinds[i], kLeafMask);
     }
     return sizes;

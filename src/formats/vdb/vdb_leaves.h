@@ -24,15 +24,14 @@
 
 namespace deltasplat {
 
-/// Some bytes of a file that are in memory.
+/// A range of a file's bytes in memory.
 class VdbRun {
   public:
-    /// Becomes the bytes [begin, end); returns whether they are there. Uses its memory again, if
-    /// that is large enough.
+    /// Loads the bytes [begin, end), if possible into its old memory. Returns whether they exist.
     /// @throw Error(kInput) if the file cannot be read
     bool read(const FileBytes& file, std::uint64_t begin, std::uint64_t end);
     bool has(const VdbLeaf& leaf) const { return leaf.begin >= begin_ && leaf.end() <= end_; }
-    /// Returns the bytes of a leaf that it has.
+    /// @param leaf  has() it
     std::span<const char> of(const VdbLeaf& leaf) const {
         return {bytes_.get() + (leaf.begin - begin_), leaf.size};
     }
@@ -45,23 +44,21 @@ class VdbRun {
     std::uint64_t capacity_ = 0;
 };
 
-/// The leaves of a grid as they lie in its file, packed: each is unpacked by whoever wants its
-/// values, on any thread, and no tree is made of them. What the
-/// file says of a leaf is checked whenever it is unpacked.
+/// The packed leaves of a grid in its file, without a tree. Each unpacking checks its leaf.
 class VdbLeaves {
   public:
     static constexpr int kVoxels = 512;
-    /// So many that follow each other are read at once, from each multiple of it on.
+    /// Leaves per read; each run starts at a multiple of this number.
     static constexpr std::size_t kRun = 128;
     using Mask = VdbLeaf::Mask;
 
-    /// What a thread keeps from leaf to leaf.
+    /// Scratch room of a thread, reused from leaf to leaf.
     template <typename Stored>
     struct Room {
-        /// A leaf's values as they are stored, and what Blosc wants besides to unpack them.
+        /// The leaf's values as stored, and Blosc's spare room.
         std::array<Stored, kVoxels + 64 / sizeof(Stored)> values;
         VdbRun run;
-        /// One behind the last leaf that is going to be asked for.
+        /// Index behind the last leaf that the thread will ask for.
         std::size_t end = std::numeric_limits<std::size_t>::max();
     };
 
@@ -72,29 +69,29 @@ class VdbLeaves {
     const std::vector<VdbLeaf>& leaves() const { return leaves_; }
     const openvdb::math::MapBase& transform() const { return *transform_; }
     /// Unpacks the values of a leaf's active voxels, in the order of the mask's bits. Thread-safe.
-    /// @tparam Stored  of the format's size: a number, or the std::uint16_t that a half is
+    /// @tparam Stored  of the format's size: a number, or std::uint16_t for halves
     /// @param leaf     of leaves()
-    /// @param mask     becomes which voxels are active
-    /// @return within `room`; nothing if the leaf's bytes are damaged
+    /// @param mask     receives the active voxels
+    /// @return a part of `room`; nothing if the leaf's bytes are damaged
     template <typename Stored>
     std::optional<std::span<const Stored>> activeValues(const VdbLeaf& leaf, Mask& mask,
                                                         Room<Stored>& room) const;
 
-    /// What a thread keeps from leaf to leaf, of allValues.
+    /// Scratch room of a thread for allValues.
     struct BytesRoom {
         VdbRun run;
         std::vector<char> stored;
     };
-    /// Unpacks the values of all voxels of a leaf, inactive ones too. Thread-safe.
+    /// Unpacks the values of all voxels of a leaf, inactive ones included. Thread-safe.
     /// @tparam T      the grid's value type: a number or a vector
-    /// @param mask    becomes which voxels are active
-    /// @param behind  one behind the last leaf that is going to be asked for
-    /// @return whether the leaf's bytes are whole
+    /// @param mask    receives the active voxels
+    /// @param behind  index behind the last leaf that the caller will ask for
+    /// @return whether the leaf's bytes are intact
     template <typename T>
     bool allValues(const VdbLeaf& leaf, T background, std::size_t behind, Mask& mask,
                    BytesRoom& room, T* values) const;
-    /// As allValues, of grids of bools and masks.
-    /// @param values  becomes which voxels are true; all that are active in a mask
+    /// Does the same for grids of bools and masks.
+    /// @param values  receives the true voxels: in a mask all active ones
     bool allBools(const VdbLeaf& leaf, std::size_t behind, Mask& mask, VdbRun& run,
                   Mask& values) const;
 
@@ -109,44 +106,40 @@ class VdbLeaves {
     openvdb::math::MapBase::ConstPtr transform_;
 };
 
-/// Returns the most bytes that a note of so many leaves may have: packing may add a little.
+/// Returns the most bytes of the size notes of this many leaves: packing may add a little.
 constexpr std::uint64_t mostLeafSizesBytes(std::size_t leaves) {
     return 64 + 9 * std::uint64_t{leaves};
 }
 
-/// Returns how many bytes each leaf of a grid has in its file behind its mask, in file order, if
-/// that is noted for as many leaves as there are, and soundly. A note may be wrong.
+/// Returns the number of bytes per leaf behind its mask, in file order; nothing if the notes are
+/// unsound or of another number of leaves. Notes may be wrong.
 /// @param stored  value of the grid's metadata "file_delayed_load" as the file has it
 std::optional<std::vector<std::uint64_t>> leafSizesOf(const std::string& stored, std::size_t leaves,
                                                       const VdbValueFormat& format);
 
-/// A grid of numbers whose leaves' values are still in their file, for who looks at each of them
-/// once.
+/// A grid of numbers whose leaf values stay in the file, for callers that visit each leaf once.
 struct PackedGrid {
     template <typename T>
     using Tree = typename openvdb::tree::Tree4<T, 5, 4, 3>::Type;
     template <typename T>
     using Nodes = std::shared_ptr<const Tree<T>>;
 
-    /// Without values in leaves, as readNodes() makes it.
+    /// Nodes whose leaves have no values, made by readNodes().
     std::variant<Nodes<float>, Nodes<double>, Nodes<std::int32_t>, Nodes<std::int64_t>> nodes;
     VdbLeaves leaves;
 };
 
-/// Says that what is packed has to be read as a whole: it is damaged, or has values that are not
-/// finite, or somebody wants it elsewhere.
+/// Says that a packed grid must be read whole: damaged, not finite, or needed elsewhere.
 struct NeedsWholeGrid : Error {
-    /// @param where  for messages
     explicit NeedsWholeGrid(const std::string& where)
         : Error(ErrorCode::kInput, where, "a grid that is read leaf by leaf",
                 "one that is read as a whole") {}
 };
 
-/// Reads a grid of a .vdb whose values stay packed: a volume without codes, whose `source` has
-/// them, for compareVolumes(), which throws NeedsWholeGrid where that is not enough.
-/// @param options  what to read; level sets stay what they are
-/// @return nothing where readVolume() has to read it: vectors, bools and masks, delta grids, what
-///         is not finite to be replaced
+/// Reads a grid of a .vdb for compareVolumes(): a volume without codes whose `source` keeps the
+/// values packed. If those are not enough, compareVolumes() throws NeedsWholeGrid.
+/// @param options  what to read; level sets stay level sets
+/// @return nothing for grids that need readVolume(): vectors, bools, masks, deltas, NaN to replace
 /// @throw as readVolume
 std::optional<Volume> readPackedVolume(const std::filesystem::path& file,
                                        const ReadOptions& options, const Listener& listener);

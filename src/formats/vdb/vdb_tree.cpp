@@ -24,7 +24,7 @@ openvdb::Coord placeOf(const std::array<std::int32_t, 3>& origin) {
     return openvdb::Coord(origin.data());
 }
 
-// What is stored of a value: of a bool a byte, which may hold anything.
+// The stored type of a value: for a bool a byte, which may hold anything.
 template <typename T>
 using StoredValue = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
 
@@ -56,7 +56,7 @@ class TreeReader {
     }
 
   private:
-    // Puts together what has been read.
+    // Joins the nodes that have been read.
     typename Tree::Ptr whole(typename Tree::Ptr tree) {
         if (!isSound_) return nullptr;
         for (auto& [origin, lower] : lowers_)
@@ -65,7 +65,7 @@ class TreeReader {
         return tree;
     }
 
-    // Reads nodes, and tiles of the root.
+    // Reads inner nodes and root tiles.
     void readInner(Tree& tree) {
         std::vector<std::unique_ptr<Upper>> uppers(nodes_.size());
         std::vector<std::unique_ptr<Lower>> lowers(nodes_.size());
@@ -151,7 +151,7 @@ class TreeReader {
 
     std::unique_ptr<Leaf> readLeaf(const VdbLeaf& leaf, std::size_t behind,
                                    VdbLeaves::BytesRoom& room) const {
-        // What Blosc takes for a moment leaves gaps.
+        // Blosc's temporary memory leaves gaps.
         expectPieces(std::size_t(1.5 * (sizeof(Leaf) + Leaf::SIZE * sizeof(T))));
         auto made = std::make_unique<Leaf>(openvdb::PartialCreate(), placeOf(leaf.origin));
         made->allocate();
@@ -184,7 +184,7 @@ class TreeReader {
     const VdbLeaves& leaves_;
     std::map<openvdb::Coord, std::unique_ptr<Upper>> uppers_;
     std::map<openvdb::Coord, std::unique_ptr<Lower>> lowers_;
-    Lower* lastNode_ = nullptr;  // that a leaf was hung into
+    Lower* lastNode_ = nullptr;  // parent of the last leaf
     std::atomic<bool> isSound_ = true;
 };
 
@@ -230,7 +230,7 @@ DELTASPLAT_READ_NODES(std::int64_t)
 
 namespace {
 
-// A node's children lie along each axis, 2^log2 of them, each of 2^childLog2 voxels.
+// A node has 2^log2 children along each axis, each of 2^childLog2 voxels.
 struct NodeShape {
     int log2;
     int childLog2;
@@ -248,7 +248,7 @@ openvdb::Coord placeOf(const VdbNode& node, int child) {
                   (child & mask) << childLog2);
 }
 
-// Writes a stored value as the grid has it.
+// Writes a stored value in the grid's type.
 void writeValue(const char* stored, const VdbValueFormat& format, char* to) {
     if (!format.areHalves()) {
         std::memcpy(to, stored, format.bytes);
@@ -262,7 +262,7 @@ void writeValue(const char* stored, const VdbValueFormat& format, char* to) {
                 format.bytes);
 }
 
-// Writes the places and values of a node's tiles; returns whether it is sound.
+// Writes the places and values of a node's tiles. Returns whether the node is sound.
 bool readNode(const FileBytes& file, const VdbValueFormat& format, const VdbNode& node,
               TilePlace* places, char* values) {
     std::vector<char> bytes(node.size);
@@ -290,7 +290,7 @@ bool readNode(const FileBytes& file, const VdbValueFormat& format, const VdbNode
     std::size_t next = 0;
     for (std::size_t word = 0; word < mask.size(); ++word) {
         for (std::uint64_t left = mask[word]; left != 0; left &= left - 1, ++next) {
-            // The file is another one than it was.
+            // The file has changed since the walk.
             if (next == node.tiles) return false;
             const std::size_t child = 64 * word + std::size_t(std::countr_zero(left));
             places[next] = {placeOf(node, int(child)), openvdb::Index(node.level)};

@@ -17,12 +17,12 @@
 
 namespace deltasplat {
 
-/// Makes the tree that a file has, node by node as OpenVDB does, on all threads.
-/// @param type        of its values: a number, bool, mask or vector of three numbers
-/// @param background  as it is stored
-/// @param nodes       those of the tree that are no leaves
-/// @param leaves      all of them, in the order of the file
-/// @return null if some are damaged
+/// Makes the tree of a grid on all threads, with the same nodes as OpenVDB.
+/// @param type        value type: a number, bool, mask or vector of three numbers
+/// @param background  as stored
+/// @param nodes       all nodes above the leaves
+/// @param leaves      all leaves in file order
+/// @return null for damaged nodes or leaves
 /// @throw whatever the listener throws
 openvdb::tree::TreeBase::Ptr readTree(const FileBytes& file, const std::string& type,
                                       const VdbValueFormat& format,
@@ -30,10 +30,9 @@ openvdb::tree::TreeBase::Ptr readTree(const FileBytes& file, const std::string& 
                                       const std::vector<VdbNode>& nodes, const VdbLeaves& leaves,
                                       const Listener& listener);
 
-/// Makes a tree of the same nodes whose leaves have no values: LeafNode::transientData() is which
-/// of `leaves` each of them is.
+/// Makes the same tree without leaf values: LeafNode::transientData() is the index in `leaves`.
 /// @tparam T  value type: float, double, std::int32_t or std::int64_t
-/// @return null if nodes are damaged
+/// @return null for damaged nodes
 template <typename T>
 typename openvdb::tree::Tree4<T, 5, 4, 3>::Type::Ptr readNodes(const FileBytes& file,
                                                                const VdbValueFormat& format,
@@ -45,15 +44,13 @@ typename openvdb::tree::Tree4<T, 5, 4, 3>::Type::Ptr readNodes(const FileBytes& 
 class VdbTiles {
   public:
     const std::vector<TilePlace>& places() const { return places_; }
-    /// @tparam T  the grid's value type
     template <typename T>
     std::span<const T> values() const {
         assert(values_.size() == places_.size() * sizeof(T));
         return {reinterpret_cast<const T*>(values_.data()), places_.size()};
     }
 
-    /// Reads and unpacks them, on all threads.
-    /// @return nothing if they are damaged
+    /// Reads and unpacks the tiles on all threads; returns nothing if they are damaged.
     static std::optional<VdbTiles> read(const FileBytes& file, const VdbValueFormat& format,
                                         const std::vector<VdbNode>& nodes);
 

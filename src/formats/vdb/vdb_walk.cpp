@@ -37,7 +37,7 @@ class Walk {
 
     VdbTreeSize run() {
         topology();
-        // Values follow in the order of the root's map, not in that of the nodes before.
+        // Values follow in the order of the root's map, not in the order of the nodes.
         for (const auto& [origin, leaves] : root_)
             for (const VdbLeaf& leaf : leaves) leafValues(leaf);
         return size_;
@@ -152,8 +152,7 @@ class Walk {
     }
 
     // Children are numbered x slowest, z fastest.
-    // @param number  of the child's place
-    // @param before  how many children lie before it
+    // @param before  number of children before this one
     template <int kLog2>
     void child(const Place& origin, int number, std::size_t before) {
         constexpr int kChildLog2 = kLog2 == kUpperLog2 ? kLowerLog2 + kLeafLog2 : kLeafLog2;
@@ -162,7 +161,7 @@ class Walk {
                                       number & kMask};
         Place place;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            // Origins are whole multiples, so adding cannot overflow.
+            // Origins are whole multiples of the extent, so adding cannot overflow.
             place[axis] = origin[axis] + (step[axis] << kChildLog2);
         }
         if constexpr (kLog2 == kUpperLog2) {
@@ -180,9 +179,8 @@ class Walk {
             openvdb::CoordBBox::createCube(openvdb::Coord(origin.data()), kUpperExtent));
     }
 
-    // WriteNotes which voxels are active.
-    // @param values     of a node or leaf at `origin`
-    // @param childLog2  of the voxels that one of its places has along an axis
+    // Notes the active voxels of a node or leaf at `origin`.
+    // @param childLog2  log2 of the extent of one of its places, in voxels
     template <int kLog2>
     void noteActive(const Place& origin, const Mask<kLog2>& values, int childLog2) {
         std::uint64_t places = 0;
@@ -223,7 +221,7 @@ class Walk {
         data(count, kLog2 == kLeafLog2);
     }
 
-    // @param ofLeaf  where values are unpacked later, by who says whether they can be
+    // @param ofLeaf  leaf values: whoever unpacks them later checks them
     void data(std::uint64_t count, bool ofLeaf) {
         if (format_.areKeptAsHalves() && count == 0) return;
         const std::uint64_t expected = count * format_.stored;
@@ -235,14 +233,14 @@ class Walk {
         }
         const std::int64_t size = bytes_.i64();
         if (size <= 0) {
-            // Stored as it is, with the size's sign turned.
+            // A negative size marks values that are not packed.
             if (std::uint64_t{0} - std::uint64_t(size) != expected) {
                 fail("a node of " + std::to_string(size) + " bytes instead of -" +
                      std::to_string(expected));
             }
             bytes_.skip(expected);
         } else if (std::uint64_t(size) > expected + expected / 8 + 1024) {
-            // Packing adds next to nothing to what does not pack: this is no size to make room for.
+            // Packing adds little to incompressible values: no memory for such a size.
             fail("a compressed node of " + std::to_string(size) + " bytes");
         } else if (blosc) {
             bloscData(std::uint64_t(size), expected);
@@ -255,8 +253,7 @@ class Walk {
         }
     }
 
-    // A Blosc chunk opens with 16 bytes, in them its unpacked and its packed size. The decoder
-    // believes those and would leave the chunk.
+    // Checks both sizes in a Blosc chunk's head of 16 bytes, because the decoder trusts them.
     void bloscData(std::uint64_t size, std::uint64_t expected) {
         constexpr std::uint64_t kHeader = 16;
         if (size < kHeader) fail("a compressed node of " + std::to_string(size) + " bytes");
@@ -274,14 +271,14 @@ class Walk {
     VdbTreeSize size_;
     std::map<Place, std::vector<VdbLeaf>> root_;  // leaves of each root node, in file order
     std::vector<VdbLeaf>* leaves_ = nullptr;
-    std::vector<VdbLeaf::Mask> leafMasks_;  // of the node that is walked
+    std::vector<VdbLeaf::Mask> leafMasks_;  // of the current node
 };
 
 }  // namespace
 
-// Halves of words, each times a number of its own below the prime 2^61 - 1, modulo that: numbers
-// that are drawn by chance give two masks that differ the same sum with a probability of 2^-61,
-// whatever these are (L. Carter and M. Wegman, "Universal Classes of Hash Functions", 1979).
+// Sums up 32-bit halves of words, each times its own random number below the prime 2^61 - 1, modulo
+// this prime. Two different masks get the same sum with a probability of 2^-61, whatever they are
+// (L. Carter and M. Wegman, "Universal Classes of Hash Functions", 1979).
 std::uint64_t VdbLeaf::sumOf(const Mask& mask) {
     __extension__ using Wide = unsigned __int128;
     constexpr std::uint64_t kPrime = (std::uint64_t{1} << 61) - 1;
@@ -328,7 +325,7 @@ bool VdbValueFormat::setType(const std::string& type, bool half) {
 }
 
 double VdbTreeSize::memoryBytes(const VdbValueFormat& format) const {
-    // A node's slots hold a pointer or a value; a leaf has 128 bytes beside its values.
+    // A node's slot holds a pointer or a value; a leaf has 128 bytes besides its values.
     const auto treeBytes = [&](std::uint32_t value) {
         const std::uint32_t slot = std::max<std::uint32_t>(8, (value + 7) / 8 * 8);
         return double(leaves) * (512.0 * value + 128) +
@@ -341,14 +338,14 @@ double VdbTreeSize::memoryBytes(const VdbValueFormat& format) const {
 }
 
 double VdbTreeSize::codeBytes(const VdbValueFormat& format) const {
-    // A tile's place, value and code, and its part of a node's bytes, unpacked.
+    // A tile's place, value and code, and its share of a node's unpacked bytes.
     const double tileBytes = 16 + 2.0 * format.bytes + 2;
     return double(leaves) * (512.0 * 2 + 128) + double(tiles) * tileBytes +
            (double(lower) * 4096 + double(upper) * 32768) * 8;
 }
 
 double VdbTreeSize::nodeBytes() const {
-    // A leaf's mask, what else it is made of, and a VdbLeaf.
+    // A leaf's mask, its other members, and a VdbLeaf.
     const double leafBytes = 64 + 64 + sizeof(VdbLeaf);
     return double(leaves) * leafBytes + (double(lower) * 4096 + double(upper) * 32768) * 8;
 }

@@ -13,7 +13,7 @@ template <typename PartTree, typename VectorTree>
 std::shared_ptr<PartTree> partOf(const VectorTree& vectors, int axis) {
     auto tree =
         std::make_shared<PartTree>(vectors, vectors.background()[axis], openvdb::TopologyCopy());
-    // Above leaves, values are those of tiles.
+    // Values above the leaves are those of tiles.
     auto tiles = vectors.cbeginValueOn();
     tiles.setMaxDepth(VectorTree::ValueOnCIter::LEAF_DEPTH - 1);
     for (; tiles; ++tiles) {

@@ -12,16 +12,15 @@ namespace deltasplat {
 /// Whether each voxel of a grid has three numbers.
 bool isVector(const VdbGrid& grid);
 
-/// Which part of a vector grid a name asks for, "Cd.x": 0 for .x, 1 for .y, 2 for .z.
+/// The part of a vector grid that a name such as "Cd.x" asks for: 0 for .x, 1 for .y, 2 for .z.
 struct VectorPart {
     std::string grid;
     int axis;
 };
 std::optional<VectorPart> vectorPartOf(const std::string& name);
 
-/// Returns a grid of one part of a vector grid, with the same active voxels, transform and
-/// metadata. Multi-threaded.
-/// @param grid  of isVector()
+/// Returns one part of a vector grid with its voxels, transform and metadata. Multi-threaded.
+/// @param grid  isVector()
 TreeGrid gridOfPart(const TreeGrid& grid, int axis);
 
 }  // namespace deltasplat

@@ -37,8 +37,7 @@ namespace deltasplat {
 
 namespace {
 
-/// How codes are written: as the values that they stand for, without a tree of these.
-/// @tparam T  OpenVDB's tree of such values
+/// Source of TreeWriter for codes: writes their values for a tree T of OpenVDB without making one.
 template <typename T>
 class CodeValues {
   public:
@@ -47,7 +46,6 @@ class CodeValues {
     using Leaf = CodeTree::Leaf;
     using Value = typename Written::ValueType;
 
-    /// @param background  what inactive voxels hold
     CodeValues(std::shared_ptr<const CodeTree> codes, const CodeBook& book, double background)
         : codes_(std::move(codes)), background_(valueAs<Value>(background)) {
         for (const double value : valuesOfCodes(book)) {
@@ -76,7 +74,7 @@ class CodeValues {
 
   private:
     using ToHalf = openvdb::io::RealToHalf<Value>;
-    // No bits of a vector's words.
+    // Avoids the packed bits of vector<bool>.
     using Kept = std::conditional_t<std::is_same_v<Value, bool>, std::uint8_t, Value>;
 
     template <typename Stored>
@@ -95,8 +93,8 @@ class CodeValues {
 
     std::shared_ptr<const CodeTree> codes_;
     Value background_;
-    std::vector<Kept> values_;                    // of each code
-    std::vector<typename ToHalf::HalfT> halves_;  // of each code, of real values
+    std::vector<Kept> values_;                    // per code
+    std::vector<typename ToHalf::HalfT> halves_;  // per code, for real values
 };
 
 template <typename T>
@@ -108,8 +106,9 @@ bool isHalf(T value) {
 template <typename T>
 bool areHalves(const Volume& volume, double background) {
     if (!isHalf(valueAs<T>(background))) return false;
-    for (std::size_t code = 0; code < volume.histogram.size(); ++code) {
-        if (volume.histogram[code] > 0 && !isHalf(valueAs<T>(volume.codeBook.valueOf(Code(code)))))
+    for (std::size_t code = 0; code < volume.histogram().size(); ++code) {
+        if (volume.histogram()[code] > 0 &&
+            !isHalf(valueAs<T>(volume.codeBook().valueOf(Code(code)))))
             return false;
     }
     return true;
@@ -129,10 +128,10 @@ bool isHalfLeaf(const Leaf& leaf, bool inactiveOnly) {
     return true;
 }
 
-// @param inactiveOnly  leaves active voxels of leaves out
+// @param inactiveOnly  skips active voxels of leaves
 template <typename Tree>
 bool survives(const Tree& tree, bool inactiveOnly) {
-    // Background and inactive values are stored as halves too.
+    // Background and inactive values are stored as halves, too.
     if (!isHalf(tree.background())) return false;
     auto tile = tree.cbeginValueAll();
     tile.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
@@ -156,7 +155,7 @@ bool survivesHalf(const TreeGrid& grid, const Volume* volume) {
     bool all = false;
     grid.apply<TreeTypes<openvdb::FloatTree, openvdb::DoubleTree>>([&](const auto& tree) {
         using Value = typename std::decay_t<decltype(tree)>::ValueType;
-        const bool isCounted = volume && volume->codeBook.isExact();
+        const bool isCounted = volume && volume->codeBook().isExact();
         all = (!isCounted || areHalves<Value>(*volume, double(tree.background()))) &&
               survives(tree, isCounted);
     });
@@ -170,15 +169,14 @@ bool survivesHalf(const Volume& volume, const std::string& type, double backgrou
 
 namespace {
 
-using openvdb::GridBase;  // for names of metadata
+using openvdb::GridBase;
 
-// Whether OpenVDB has grids of a type.
 bool isGridType(const std::string& type) {
     const auto types = {"float", "half", "double", "int32", "int64", "bool", "mask"};
     return std::find(types.begin(), types.end(), type) != types.end();
 }
 
-// What a volume without OpenVDB's types becomes.
+// Returns the grid type of a volume that has none of OpenVDB's types.
 std::string smallestType(const ValueFacts& facts) {
     if (facts.fit(RawType::kFloat32)) return "float";
     if (facts.fit(RawType::kInt32)) return "int32";
@@ -187,19 +185,18 @@ std::string smallestType(const ValueFacts& facts) {
 
 std::shared_ptr<openvdb::TreeBase> fromCodes(const Volume& volume, const std::string& type) {
     std::shared_ptr<openvdb::TreeBase> made;
-    const double background = volume.hasBackground ? volume.background : 0;
+    const double background = volume.hasBackground() ? volume.background() : 0;
     applyType(ScalarTrees(), type, [&]<typename Tree>(std::type_identity<Tree>) {
-        made = treeFromCodes<Tree>(volume.codes->tree(), volume.codeBook,
+        made = treeFromCodes<Tree>(volume.codes()->tree(), volume.codeBook(),
                                    valueAs<typename Tree::ValueType>(background));
     });
     return made;
 }
 
-// Makes a tree of the same active voxels and tiles, whose values are converted.
+// Makes a tree of the same active voxels and tiles with converted values.
 template <typename Made, typename Tree>
 std::shared_ptr<Made> converted(const Tree& tree) {
     using T = typename Made::ValueType;
-    // OpenVDB's trees cannot be assigned, only made in place.
     auto made = std::make_shared<Made>(tree, T(0), openvdb::TopologyCopy());
     std::vector<const typename Tree::LeafNodeType*> sources;
     std::vector<typename Made::LeafNodeType*> leaves;
@@ -232,18 +229,18 @@ std::shared_ptr<openvdb::TreeBase> fromSource(const TreeGrid& source, const std:
 
 VdbMetadata metadataOf(const Volume& volume) {
     VdbMetadata metadata;
-    metadata.insert(GridBase::META_GRID_NAME, volume.name);
+    metadata.insert(GridBase::META_GRID_NAME, volume.name());
     metadata.insert(GridBase::META_GRID_CREATOR, std::string("deltasplat " DELTASPLAT_VERSION));
-    metadata.insert(GridBase::META_GRID_CLASS, volume.gridClass);
+    metadata.insert(GridBase::META_GRID_CLASS, volume.gridClass());
     metadata.insert(GridBase::META_GRID_CLASS, gridClassOf(metadata));
-    if (!volume.hasBackground) {
-        metadata.insert(kSourceTypeKey, volume.type);
-        metadata.insert(kBoxMinKey, volume.box.min);
-        metadata.insert(kBoxMaxKey, volume.box.max);
+    if (!volume.hasBackground()) {
+        metadata.insert(kSourceTypeKey, volume.type());
+        metadata.insert(kBoxMinKey, volume.box().min);
+        metadata.insert(kBoxMaxKey, volume.box().max);
     }
-    if (!volume.space.empty()) metadata.insert(kSpaceKey, volume.space);
-    if (!volume.lengthUnit.empty()) metadata.insert(kLengthUnitKey, volume.lengthUnit);
-    if (volume.labels) metadata.insert(kLabelsKey, labelText(*volume.labels));
+    if (!volume.space().empty()) metadata.insert(kSpaceKey, volume.space());
+    if (!volume.lengthUnit().empty()) metadata.insert(kLengthUnitKey, volume.lengthUnit());
+    if (volume.labels()) metadata.insert(kLabelsKey, labelText(*volume.labels()));
     return metadata;
 }
 
@@ -253,7 +250,7 @@ std::shared_ptr<const WrittenTree> writtenTree(const Volume& volume, const std::
     applyType(ScalarTrees(), type, [&]<typename Tree>(std::type_identity<Tree>) {
         using Values = CodeValues<Tree>;
         written = std::make_shared<const TreeWriter<Values>>(
-            Values(volume.codes, volume.codeBook, background));
+            Values(volume.codes(), volume.codeBook(), background));
     });
     return written;
 }
@@ -261,49 +258,47 @@ std::shared_ptr<const WrittenTree> writtenTree(const Volume& volume, const std::
 }  // namespace
 
 Volume withHoldableUnit(Volume volume) {
-    const double own = millimetresIn(volume.lengthUnit);
-    if (own == 0 || hasMap(volume.worldFromIndex)) return volume;
+    const double own = millimetresIn(volume.lengthUnit());
+    if (own == 0 || hasMap(volume.worldFromIndex())) return volume;
     for (const char* const unit : {"mm", "um", "nm", "pm"}) {
         const double factor = own / millimetresIn(unit);
-        glm::dmat4 scaled = volume.worldFromIndex;
+        glm::dmat4 scaled = volume.worldFromIndex();
         scaleLengths(scaled, factor);
         if (!(factor > 1) || !hasMap(scaled)) continue;
-        volume.worldFromIndex = scaled;
-        volume.lengthUnit = unit;
-        break;
+        return volume.withPlace(scaled, volume.space(), unit);
     }
     return volume;
 }
 
 std::string gridTypeOf(const Volume& volume) {
-    const bool keepsType = volume.hasBackground && isGridType(volume.type);
+    const bool keepsType = volume.hasBackground() && isGridType(volume.type());
     if (!keepsType) return smallestType(factsOf(volume));
-    return volume.type == "half" ? "float" : volume.type;
+    return volume.type() == "half" ? "float" : volume.type();
 }
 
 WrittenGrid writtenCodes(const Volume& volume, const std::string& type, double background) {
-    return {volume.name, metadataOf(volume), makeMap(volume.worldFromIndex),
+    return {volume.name(), metadataOf(volume), makeMap(volume.worldFromIndex()),
             writtenTree(volume, type, background)};
 }
 
 TreeGrid gridOf(const Volume& volume) {
-    if (volume.source && volume.hasBackground) {
-        TreeGrid grid = volume.source->grid;
-        // The volume's place counts, which may be in another unit.
-        if (matrixOf(*grid.map) != volume.worldFromIndex) grid.map = makeMap(volume.worldFromIndex);
-        if (!volume.lengthUnit.empty()) grid.metadata.insert(kLengthUnitKey, volume.lengthUnit);
-        if (volume.labels) grid.metadata.insert(kLabelsKey, labelText(*volume.labels));
+    if (volume.source() && volume.hasBackground()) {
+        TreeGrid grid = volume.source()->grid;
+        // The volume's own place counts, because it may be in another unit.
+        if (matrixOf(*grid.map) != volume.worldFromIndex())
+            grid.map = makeMap(volume.worldFromIndex());
+        if (!volume.lengthUnit().empty()) grid.metadata.insert(kLengthUnitKey, volume.lengthUnit());
+        if (volume.labels()) grid.metadata.insert(kLabelsKey, labelText(*volume.labels()));
         return grid;
     }
     const std::string type = gridTypeOf(volume);
-    return {volume.source ? fromSource(volume.source->grid, type) : fromCodes(volume, type),
-            metadataOf(volume), makeMap(volume.worldFromIndex)};
+    return {volume.source() ? fromSource(volume.source()->grid, type) : fromCodes(volume, type),
+            metadataOf(volume), makeMap(volume.worldFromIndex())};
 }
 
 namespace {
 
-// Whether reading writes to a grid: level sets become fog, or get what a surface needs, and NaN
-// what replaces it.
+// Whether reading changes a grid: level sets become fog or get a surface's voxels, NaN is replaced.
 bool isChanged(const openvdb::GridBase& grid, const ReadOptions& options) {
     const bool isReal = grid.isType<openvdb::FloatGrid>() || grid.isType<openvdb::DoubleGrid>();
     const bool isLevelSet = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
@@ -329,7 +324,7 @@ Volume makeVolume(const openvdb::GridBase::ConstPtr& grid, const ReadOptions& op
     if (changes) requireMemory(where, double(grid->memUsage()));
     TreeGrid own = given;
     if (changes) own.tree = own.tree->copy();
-    Volume volume = volumeOfGrid(std::move(own), {listener, where, given.type(), options});
+    VolumeData volume = volumeOfGrid(std::move(own), {listener, where, given.type(), options});
     volume.name = given.name();
     if (volume.source && !changes) {
         SourceGrid source = *volume.source;
@@ -337,17 +332,17 @@ Volume makeVolume(const openvdb::GridBase::ConstPtr& grid, const ReadOptions& op
         volume.source = std::make_shared<const SourceGrid>(std::move(source));
     }
     listener.report(1);
-    return volume;
+    return Volume(std::move(volume));
 }
 
 openvdb::GridBase::ConstPtr makeGrid(const Volume& volume) {
     const DefaultFloats floats;
-    if (!volume.codes) {
+    if (!volume.codes()) {
         throw Error(ErrorCode::kUsage, "OpenVDB grid to make", "a volume without voxels",
                     "one that was read or made");
     }
-    const bool wasGiven = volume.source && volume.source->given && volume.hasBackground;
-    return wasGiven ? volume.source->given : toOpenVdb(gridOf(volume));
+    const bool wasGiven = volume.source() && volume.source()->given && volume.hasBackground();
+    return wasGiven ? volume.source()->given : toOpenVdb(gridOf(volume));
 }
 
 }  // namespace deltasplat

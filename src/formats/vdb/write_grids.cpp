@@ -19,22 +19,22 @@
 namespace deltasplat {
 namespace {
 
-// Share of the progress that making the grids takes; compressing and writing is the longer part.
+// Share of the progress for making grids; compressing and writing takes longer.
 constexpr double kGridShare = 0.3;
 
 std::string quoted(const std::string& name) {
     return "grid \"" + name + "\"";
 }
 
-// Returns the value to drop, or nothing if there is none that stands out.
+// Returns the value to drop, or nothing if no value stands out.
 std::optional<double> droppedValue(const Volume& volume, const WriteOptions& options) {
     if (options.background) return options.background;
-    if (volume.hasBackground) return volume.background;
+    if (volume.hasBackground()) return volume.background();
     if (!guessBackground(volume)) return {};
     return mostFrequentValue(volume);
 }
 
-// A background has to be a value of the grid's type.
+// Requires a background that the grid's type can hold.
 void requireValue(const std::string& type, double value) {
     bool holds = true;
     if (type == "float") holds = std::abs(value) <= double(std::numeric_limits<float>::max());
@@ -46,7 +46,7 @@ void requireValue(const std::string& type, double value) {
     throw Error(ErrorCode::kUsage, "`background`", numberText(value), "a value of type " + type);
 }
 
-// Returns the value to drop, or says that there is none.
+// Returns the value to drop, or remarks that there is none.
 std::optional<double> valueToDrop(const Volume& volume, const WriteOptions& options,
                                   WriteNotes& notes) {
     const std::optional<double> dropped = droppedValue(volume, options);
@@ -62,37 +62,37 @@ TreeGrid sparseGrid(const TreeGrid& grid, const Volume& volume, const WriteOptio
     const std::optional<double> dropped = valueToDrop(volume, options, notes);
     if (!dropped) return grid;
     const double value = *dropped;
-    // Inactive voxels that are there already have a value, which another background would change.
-    if (volume.hasBackground && value != volume.background) {
-        notes.remark("`background`: has no effect on " + quoted(volume.name) +
-                     ", whose background is " + numberText(volume.background));
+    // Another background would change the value of existing inactive voxels.
+    if (volume.hasBackground() && value != volume.background()) {
+        notes.remark("`background`: has no effect on " + quoted(volume.name()) +
+                     ", whose background is " + numberText(volume.background()));
         return grid;
     }
     requireValue(grid.type(), value);
     TreeGrid sparse = dropBackground(grid, value);
     const std::uint64_t kept = sparse.tree->activeVoxelCount();
-    if (volume.hasBackground && kept != volume.activeCount) {
-        notes.loss(quoted(volume.name) + ": " +
-                   countText(volume.activeCount - kept, "active voxel") + " of value " +
+    if (volume.hasBackground() && kept != volume.activeCount()) {
+        notes.loss(quoted(volume.name()) + ": " +
+                   countText(volume.activeCount() - kept, "active voxel") + " of value " +
                    numberText(value) + " made inactive");
     }
     return sparse;
 }
 
-// Says what a volume without OpenVDB's types is stored as, if that has another name.
+// Remarks the type in which a volume without OpenVDB's types is stored, if its name differs.
 void noteType(const Volume& volume, const std::string& type, bool half, WriteNotes& notes) {
-    const bool same = volume.type == type || (volume.type == "float32" && type == "float") ||
-                      (volume.type == "float64" && type == "double");
-    // What was not read exactly has been said.
-    if (volume.hasBackground || same || volume.readError > 0) return;
-    notes.remark(volume.type + " stored as " + (half ? "half" : type) +
+    const bool same = volume.type() == type || (volume.type() == "float32" && type == "float") ||
+                      (volume.type() == "float64" && type == "double");
+    // Inexact reading has been reported before.
+    if (volume.hasBackground() || same || volume.readError() > 0) return;
+    notes.remark(volume.type() + " stored as " + (half ? "half" : type) +
                  ", which holds every value");
 }
 
-// Returns what is stored of a volume that has codes alone. No tree of values is made.
+// Returns a volume that has only codes ready for writing. No tree of values is made.
 WrittenGrid storedCodes(Volume volume, const WriteOptions& options, WriteNotes& notes) {
     const std::string type = gridTypeOf(volume);
-    double background = volume.hasBackground ? volume.background : 0;
+    double background = volume.hasBackground() ? volume.background() : 0;
     if (options.dropBackground) {
         if (const auto dropped = valueToDrop(volume, options, notes)) {
             requireValue(type, *dropped);
@@ -107,15 +107,16 @@ WrittenGrid storedCodes(Volume volume, const WriteOptions& options, WriteNotes& 
     return grid;
 }
 
-// Returns the grid as it is to be stored: sparser if that is asked for, in half precision or not.
+// Returns the grid ready for writing: sparser if that is asked for, in half precision or not.
 WrittenGrid storedGrid(Volume volume, const WriteOptions& options, WriteNotes& notes) {
-    if (!volume.source && !(volume.hasBackground && options.dropBackground))
+    if (!volume.source() && !(volume.hasBackground() && options.dropBackground))
         return storedCodes(std::move(volume), options, notes);
     TreeGrid grid = gridOf(volume);
-    volume.codes.reset();
+    volume = volume.withoutCodes();
     if (options.dropBackground) grid = sparseGrid(grid, volume, options, notes);
 
-    if (options.keepPrecision && volume.source && volume.hasBackground) return writtenGrid(grid);
+    if (options.keepPrecision && volume.source() && volume.hasBackground())
+        return writtenGrid(grid);
     const bool half = !options.fullFloat && survivesHalf(grid, &volume);
     noteType(volume, grid.type(), half, notes);
     WrittenGrid written = writtenGrid(grid);
@@ -123,12 +124,12 @@ WrittenGrid storedGrid(Volume volume, const WriteOptions& options, WriteNotes& n
     return written;
 }
 
-// Volumes of several files share the metadata of all; where two have one key, the first wins.
+// Merges the metadata of all volumes' files; of equal keys the first wins.
 VdbMetadata fileMetadata(const std::vector<Volume>& volumes) {
     VdbMetadata all;
     for (const Volume& volume : volumes) {
-        if (!volume.source) continue;
-        for (const auto& [name, entry] : volume.source->fileMetadata.entries()) {
+        if (!volume.source()) continue;
+        for (const auto& [name, entry] : volume.source()->fileMetadata.entries()) {
             if (!all.find(name)) all.insert(name, entry);
         }
     }
@@ -144,7 +145,8 @@ WriteReport writeGrids(const std::filesystem::path& file, std::vector<Volume> vo
     const VdbMetadata metadata = fileMetadata(volumes);
     std::vector<WrittenGrid> grids;
     for (std::size_t i = 0; i < volumes.size(); ++i) {
-        grids.push_back(storedGrid(withHoldableUnit(std::move(volumes[i])), options, notes));
+        Volume volume = withHoldableUnit(std::move(volumes[i]));
+        grids.push_back(storedGrid(std::move(volume), options, notes));
         listener.report(kGridShare * double(i + 1) / double(volumes.size()));
     }
     Listener writing = listener;

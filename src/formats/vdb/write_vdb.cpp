@@ -79,10 +79,9 @@ namespace {
 
 using openvdb::GridBase;
 
-// Share of the progress that packing takes.
 constexpr double kPackShare = 0.9;
 
-// Packed leaves that are kept until they are written.
+// Most bytes of packed leaves that are kept until written.
 constexpr std::uint64_t kMostKept = std::uint64_t{512} << 20;
 
 constexpr std::size_t kTagBytes = 36;
@@ -104,7 +103,6 @@ glm::ivec3 toVector(const openvdb::Coord& place) {
     return {place.x(), place.y(), place.z()};
 }
 
-// A grid whose leaves are packed.
 class GridPacker {
   public:
     GridPacker(const WrittenGrid& grid, std::string uniqueName)
@@ -114,8 +112,7 @@ class GridPacker {
         leaves_.pack(room, step);
     }
 
-    // Returns what lies before the leaves.
-    // @param begin  where in the file
+    // Returns the bytes before the leaves, for a grid at offset `begin` of the file.
     std::string head(std::uint64_t begin) const {
         const TreeFacts facts = grid_.tree->facts();
         std::string bytes;
@@ -158,7 +155,7 @@ class GridPacker {
     LeafPieces leaves_;
 };
 
-// Returns names that are each there once: what OpenVDB tells grids of one name apart by.
+// Returns unique names, with the suffixes by which OpenVDB separates grids of the same name.
 std::vector<std::string> uniqueNames(const std::vector<WrittenGrid>& grids) {
     std::map<std::string, int> counts;
     for (const WrittenGrid& grid : grids) ++counts[grid.name];
@@ -183,18 +180,17 @@ std::string fileHead(const std::string& tag, const VdbMetadata& metadata, std::s
     appendBytes(openvdb::OPENVDB_FILE_VERSION, bytes);
     appendBytes(openvdb::OPENVDB_LIBRARY_MAJOR_VERSION, bytes);
     appendBytes(openvdb::OPENVDB_LIBRARY_MINOR_VERSION, bytes);
-    bytes += '\1';  // it says where grids lie
+    bytes += '\1';  // has grid offsets
     bytes += tag;
     bytes += metadata.bytes();
     appendBytes(std::uint32_t(grids), bytes);
     return bytes;
 }
 
-// Where a file has its tag: after magic number (8 bytes), file version, library version (4 bytes
-// each of three numbers) and the flag for grid offsets (1 byte).
+// The tag follows magic number (8 bytes), three version numbers (4 bytes each) and offset flag (1).
 constexpr std::size_t kTagPlace = 21;
 
-// Puts the tag, which was left open, into a file.
+// Fills in the tag, which was left open.
 void writeTag(AtomicFile& file, const std::string& tag) {
     if (::lseek(file.descriptor(), kTagPlace, SEEK_SET) != off_t(kTagPlace))
         throwCannotWrite(file.finalPath(), errno);
@@ -212,7 +208,7 @@ void writeGrids(AtomicFile& file, const std::vector<std::unique_ptr<GridPacker>>
     }
     ContentTag tag;
     if (file.isDevice()) {
-        // It may be one that takes every byte just once.
+        // A device may take each byte only once.
         for (const std::string& head : heads) tag.add(head.data(), head.size());
         front.replace(kTagPlace, kTagBytes, tag.text());
     }
@@ -236,7 +232,7 @@ void writeGrids(AtomicFile& file, const std::vector<std::unique_ptr<GridPacker>>
 void writeVdb(const std::filesystem::path& file, const std::vector<WrittenGrid>& grids,
               const VdbMetadata& fileMetadata, const Listener& listener) {
     AtomicFile output(file);
-    // Its grids' places are counted from the beginning, where others may have written.
+    // Grid offsets count from the file's beginning, where others may have written.
     struct stat status {};
     const bool isOpenFile =
         output.isDevice() && ::fstat(output.descriptor(), &status) == 0 && S_ISREG(status.st_mode);
@@ -244,7 +240,7 @@ void writeVdb(const std::filesystem::path& file, const std::vector<WrittenGrid>&
 
     std::vector<std::unique_ptr<GridPacker>> packed;
     std::vector<std::string> names = uniqueNames(grids);
-    // Under a limit what is taken has to follow from the grids alone.
+    // Under a memory limit the room must depend on the grids alone.
     std::uint64_t room = memoryLimit() != 0 ? 0 : std::min(kMostKept, availableMemory() / 4);
     for (std::size_t i = 0; i < grids.size(); ++i) {
         packed.push_back(std::make_unique<GridPacker>(grids[i], std::move(names[i])));
@@ -269,11 +265,11 @@ std::uint64_t writtenBytes(const WrittenGrid& grid) {
 // points/StreamCompression.h).
 namespace {
 
-// Smaller arrays are not packed, or with zeros behind them.
+// Smaller arrays are not packed, or are padded with zeros.
 constexpr std::size_t kLeastBytes = 48;
 constexpr std::size_t kLeastPacked = 128;
 
-// Appends an array: how many bytes it is packed in, 0 if it is not, and those.
+// Appends an array: its packed size, or 0 if it is not packed, then its bytes.
 template <typename T>
 void appendArray(const std::vector<T>& values, bool mayPack, std::string& to) {
     const std::size_t bytes = values.size() * sizeof(T);
@@ -324,7 +320,7 @@ PackedLeaves LeafPieces::packPiece(std::size_t piece) const {
     return packed;
 }
 
-// Packs pieces from `begin` on, and calls use() for each of them, in order.
+// Packs the pieces from `begin` on, and calls use() for each piece in order.
 void LeafPieces::forBatches(std::size_t begin, const std::function<void(PackedLeaves)>& use) const {
     const std::size_t most = std::size_t(std::max(1, threadCount())) * kPiecesPerThread;
     for (; begin < count(); begin += most) {

@@ -14,57 +14,53 @@
 
 namespace deltasplat {
 
-/// Makes the tag of a file from its content, so that the same content has the same tag.
+/// Makes a file's tag from its content, so that equal content gets equal tags.
 class ContentTag {
   public:
-    /// Takes the bytes that follow.
     void add(const char* bytes, std::size_t count);
-    /// Returns a UUID of version 8 (free use, RFC 9562) that stands for all bytes.
+    /// Returns a UUID of version 8 (free use, RFC 9562) of all bytes.
     std::string text();
 
   private:
     void hashBlock();
 
     std::uint64_t hash_ = 0xcbf29ce484222325u;
-    std::vector<char> block_;  // of the bytes that are not hashed yet
+    std::vector<char> block_;  // bytes not hashed yet
 };
 
-/// Writes grids into one `.vdb`: Blosc and active-mask compression, grid offsets, statistics in the
-/// metadata, the same bytes as openvdb::io::File writes, with two differences. The file appears
-/// only when it is whole (io::File does not notice a full disk). And its 128-bit tag, random
-/// otherwise, is made from the content, so that the same grids give the same bytes (where the file
-/// is a device, from what comes before voxels). On all threads; OpenVDB's library is not needed.
-/// @throw Error(kOutput) if it cannot be written; whatever `listener.progress` throws
+/// Writes grids into one `.vdb` on all threads, without OpenVDB's library: Blosc and active-mask
+/// compression, grid offsets, statistics in the metadata. The bytes equal those of
+/// openvdb::io::File, with two exceptions. The file appears only once complete (io::File does not
+/// notice a full disk). The 128-bit tag, random in OpenVDB, is made from the content, so equal
+/// grids give equal bytes; on a device the tag covers only the bytes before voxels.
+/// @throw Error(kOutput) if the file cannot be written; whatever `listener.progress` throws
 void writeVdb(const std::filesystem::path& file, const std::vector<WrittenGrid>& grids,
               const VdbMetadata& fileMetadata = {}, const Listener& listener = {});
 
-/// Returns how many bytes a file of this grid alone has.
+/// Returns the size of a file with this grid alone.
 std::uint64_t writtenBytes(const WrittenGrid& grid);
 
-/// Returns the value of a grid's metadata "file_delayed_load" as a file has it, which leafSizesOf
-/// reads.
-/// @param kinds    of leaves in the order of the file, as PackedLeaves has them
+/// Returns the value of the metadata "file_delayed_load", which leafSizesOf reads.
+/// @param kinds    per leaf in file order, as in PackedLeaves
 /// @param sizes    likewise
-/// @param mayPack  whether they are packed by Blosc where that makes them smaller
+/// @param mayPack  whether Blosc packs the notes if that makes them smaller
 std::string leafNotes(const std::vector<std::int8_t>& kinds, const std::vector<std::int64_t>& sizes,
                       bool mayPack);
 
-/// The leaves of a tree, packed on all threads. A file has to say how large they are before it has
-/// them: so all are packed, and those for which there is no room are packed once more when they are
-/// written.
+/// The leaves of a tree, packed on all threads. A file states their sizes before the leaves, so all
+/// leaves are packed first. Leaves without room in memory are packed again on writing.
 class LeafPieces {
   public:
-    /// @param tree  must live as long
+    /// @param tree  outlives this object
     LeafPieces(const WrittenTree& tree, bool half);
 
-    /// Packs all leaves.
-    /// @param room  how many bytes may be kept in memory; becomes what is left
-    /// @param step  hears of the share that is done; may throw
+    /// @param room  bytes of memory for packed leaves; reduced by those used
+    /// @param step  hears the finished share; may throw
     void pack(std::uint64_t& room, const std::function<void(double)>& step);
     std::uint64_t bytes() const { return bytes_; }
-    /// Returns OpenVDB's notes of all leaves, as leafNotes() has them.
+    /// Returns the leafNotes() of all leaves.
     std::string notes(bool mayPack) const;
-    /// Calls use(bytes) for what pack() has packed, in order, and lets go of it.
+    /// Calls use(bytes) for all packed leaves in order, and releases them.
     void take(const std::function<void(const std::string&)>& use);
 
   private:
@@ -75,7 +71,7 @@ class LeafPieces {
     const WrittenTree& tree_;
     bool half_;
     std::uint64_t bytes_ = 0;
-    std::vector<std::string> kept_;  // the first ones
+    std::vector<std::string> kept_;  // the first pieces
     std::vector<std::int8_t> kinds_;
     std::vector<std::int64_t> sizes_;
 };

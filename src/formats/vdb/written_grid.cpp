@@ -27,7 +27,7 @@ WrittenGrid writtenGrid(const TreeGrid& grid) {
     const auto take = [&](const auto& tree) {
         written.tree = writerOf<OwnValues<std::decay_t<decltype(tree)>>>(grid.tree);
     };
-    // Volumes and, of samples, colours.
+    // Vectors hold the colours of samples.
     const bool isKnown =
         grid.apply<ScalarTrees>(take) || grid.apply<TreeTypes<openvdb::Vec3STree>>(take);
     if (!isKnown)

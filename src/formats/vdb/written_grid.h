@@ -22,72 +22,68 @@
 
 namespace deltasplat {
 
-/// What OpenVDB notes of a tree beside its values.
+/// OpenVDB's notes of a tree besides its values.
 struct TreeFacts {
     std::string type;                ///< of values: "float", "int32", ...
-    std::uint64_t activeVoxels = 0;  ///< those of tiles included
-    std::uint64_t memoryBytes = 0;   ///< as a tree of OpenVDB's
+    std::uint64_t activeVoxels = 0;  ///< voxels of tiles included
+    std::uint64_t memoryBytes = 0;   ///< of the tree in OpenVDB
     openvdb::CoordBBox activeBox;    ///< of active voxels
 };
 
-/// Leaves one behind the other as a file has them, and what OpenVDB's "file_delayed_load" notes of
-/// each: how its inactive values are stored (openvdb::io's NO_MASK_..., MASK_...), and how many
-/// bytes its packed values have, with their number.
+/// Leaves as a file has them, and the notes of "file_delayed_load": the kinds of inactive values
+/// (openvdb::io's NO_MASK_..., MASK_...), and the sizes of packed values with their size field.
 struct PackedLeaves {
     std::string bytes;
     std::vector<std::int8_t> kinds;
     std::vector<std::int64_t> sizes;
 };
 
-/// A tree on its way into a .vdb file: packed by Blosc, without inactive values where these need
-/// not be stored, as OpenVDB packs it.
+/// A tree ready for a .vdb file: packed by Blosc, inactive values left out where OpenVDB does so.
 class WrittenTree {
   public:
     virtual ~WrittenTree() = default;
 
     virtual TreeFacts facts() const = 0;
-    /// Returns what comes before the values of leaves.
+    /// Returns the bytes before the leaf values.
     /// @param half  whether real values are stored as halves
     virtual std::string topology(bool half) const = 0;
     virtual std::size_t leafCount() const = 0;
-    /// Whether OpenVDB notes where leaves lie: of numbers and vectors, not of bools and masks.
+    /// Whether OpenVDB notes leaf sizes: for numbers and vectors, not for bools and masks.
     virtual bool notesLeaves() const = 0;
-    /// Adds leaves, in the order of the file. Thread-safe.
+    /// Appends leaves in file order. Thread-safe.
     virtual void packLeaves(std::size_t begin, std::size_t end, bool half,
                             PackedLeaves& to) const = 0;
 };
 
-/// A grid on its way into a .vdb file.
+/// A grid ready for a .vdb file.
 struct WrittenGrid {
     std::string name;
-    VdbMetadata metadata;  ///< what is noted anew whenever a file is written does not count
+    VdbMetadata metadata;  ///< keys of fileMetadata() are set anew
     openvdb::math::MapBase::ConstPtr map;
     std::shared_ptr<const WrittenTree> tree;
-    bool packsNotes = true;  ///< whether what is noted of leaves' sizes is packed, as OpenVDB does
+    bool packsNotes = true;  ///< whether the notes of leaf sizes are packed, as OpenVDB does
 
-    /// Whether the metadata say that real values are stored as halves.
+    /// Whether the metadata store real values as halves.
     bool isHalf() const;
 };
 
-/// Returns what is written of a scalar grid, or of one of vec3s: itself, which must not change.
-/// @throw Error(kFailed) if it is of another type
+/// Returns a scalar grid or one of vec3s ready for writing. Its tree is shared and must not change.
+/// @throw Error(kFailed) for other types
 WrittenGrid writtenGrid(const TreeGrid& grid);
 
-/// Returns what is written of a grid of words (word_tree.h). These do not pack, so the notes of its
-/// leaves are not packed either: Blosc takes longer to load than words take to read.
+/// Does the same for a grid of words (word_tree.h). Its leaf notes stay unpacked, because words do
+/// not pack and Blosc takes longer to load than words take to read.
 WrittenGrid writtenWords(const TreeGrid& grid);
 
-/// Returns what is written of a grid of deltas, of int32 or int64: active values, on a background
-/// of 0, sooner than writtenGrid() has it.
+/// Does the same faster for deltas of int32 or int64 with background 0. Inactive values are lost.
 WrittenGrid writtenDeltas(const TreeGrid& grid);
 
-/// How a tree that OpenVDB has is written: as it is.
-/// @tparam T  its Tree
+/// Source of TreeWriter for an OpenVDB tree, which is written unchanged.
 template <typename T>
 class OwnValues {
   public:
     using Tree = T;     ///< has the nodes
-    using Written = T;  ///< what the file has
+    using Written = T;  ///< as the file has it
     using Leaf = typename Tree::LeafNodeType;
     using Value = typename Tree::ValueType;
 
@@ -108,7 +104,7 @@ class OwnValues {
     std::shared_ptr<const Tree> tree_;
 };
 
-/// How a tree of deltas is written: active values alone, for others mean nothing.
+/// Source of TreeWriter for deltas: writes active values alone, because others mean nothing.
 template <typename T>
 class DeltaValues : public OwnValues<T> {
   public:
@@ -126,8 +122,7 @@ class DeltaValues : public OwnValues<T> {
     }
 };
 
-/// Writes a tree.
-/// @tparam Source  says what values its nodes have: OwnValues, or what does the same
+/// @tparam Source  provides the values of its nodes: OwnValues or a class with the same interface
 template <typename Source>
 class TreeWriter : public WrittenTree {
   public:
@@ -216,14 +211,14 @@ class TreeWriter : public WrittenTree {
         to.append(reinterpret_cast<const char*>(place.data()), 3 * sizeof(openvdb::Int32));
     }
 
-    // Appends a node that has nodes or leaves, and the nodes below.
+    // Appends an inner node and the nodes below.
     template <typename Node>
     void appendInner(const Node& node, bool half, std::string& to) const {
         const auto& children = node.getChildMask();
         const auto& active = node.getValueMask();
         appendBytes(children, to);
         appendBytes(active, to);
-        // Of children no more than their place matters.
+        // Children need no value, only their place in the mask.
         const auto values = std::make_unique<Value[]>(Node::NUM_VALUES);
         for (auto tile = node.cbeginValueAll(); tile; ++tile)
             values[tile.pos()] = source_.ofTile(*tile, tile.isValueOn());

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: Lance Williams, "Casting Curved Shadows on Curved Surfaces", 1978 (a picture from where
-// the light is says what is lit). What fog lets through takes the place of depths, for all of it
-// lies before the plane.
+// Based on: Lance Williams, "Casting Curved Shadows on Curved Surfaces", 1978 (a picture from the
+// light shows what is lit). Transmittance replaces depths, because all fog lies before the plane.
 #include "picture/extras/ground_shadow.h"
 #include "volume/placement.h"
 
@@ -33,15 +32,15 @@ namespace deltasplat {
 
 namespace {
 
-// Pixels of a side.
+// Pixels per side.
 constexpr double kMostAcross = 2048;
 constexpr double kLeastAcross = 4;
-// Radii from which on light of a point is as good as parallel: it spreads by a ten-thousandth.
+// Distance in radii from which a point's light counts as parallel: it spreads by 1/10000.
 constexpr double kFar = 1e4;
-// Sine of half the angle of view from which on a flat picture is stretched too much: 50 degrees.
+// Sine of half the view angle beyond which flat pictures are stretched too much: 50 degrees.
 constexpr double kWide = 0.766;
 
-// The axis of a camera that is least parallel to a direction, turned perpendicular to it.
+// Returns the camera's axis least parallel to a direction, made perpendicular to it.
 glm::dvec3 upOf(const glm::dvec3& direction, const Camera& axes) {
     glm::dvec3 best = axes.up;
     for (const glm::dvec3& axis : {axes.right, axes.direction})
@@ -50,7 +49,7 @@ glm::dvec3 upOf(const glm::dvec3& direction, const Camera& axes) {
     return glm::normalize(best - glm::dot(best, direction) * direction);
 }
 
-// How far the box reaches from its middle, either way.
+// Half the extent of the box along an axis.
 double reachAlong(const SeenBall& ball, const glm::dvec3& axis) {
     double reach = 0;
     for (const glm::dvec3& edge : ball.halfEdges) reach += std::abs(glm::dot(edge, axis));
@@ -60,15 +59,15 @@ double reachAlong(const SeenBall& ball, const glm::dvec3& axis) {
 }  // namespace
 
 SeenBall::SeenBall(const Volume& volume) : voxel(smallestSize(volume)) {
-    // Half of the last voxel, and what its footprint reaches beyond.
+    // Half of the last voxel, and the reach of its footprint.
     constexpr double kBeyond = 1.5;
-    const glm::dvec3 low(volume.box.min);
-    const glm::dvec3 high(volume.box.max);
-    middle = glm::dvec3(volume.worldFromIndex * glm::dvec4(0.5 * (low + high), 1));
+    const glm::dvec3 low(volume.box().min);
+    const glm::dvec3 high(volume.box().max);
+    middle = glm::dvec3(volume.worldFromIndex() * glm::dvec4(0.5 * (low + high), 1));
     radius = 0;
     for (int axis = 0; axis < 3; ++axis) {
         halfEdges[axis] =
-            (0.5 * (high[axis] - low[axis]) + kBeyond) * glm::dvec3(volume.worldFromIndex[axis]);
+            (0.5 * (high[axis] - low[axis]) + kBeyond) * glm::dvec3(volume.worldFromIndex()[axis]);
     }
     for (const double u : {-1.0, 1.0}) {
         for (const double v : {-1.0, 1.0})
@@ -118,7 +117,7 @@ Camera LightCamera::of(double pixelWorld) const {
     }
     glm::dvec2 frame(2 * reachAlong(ball_, camera.right), 2 * reachAlong(ball_, camera.up));
     if (camera.projection == Projection::kPerspective) {
-        // Of a cone around the ball.
+        // Frame of a cone around the ball.
         const double sine = ball_.radius / distance_;
         frame = glm::dvec2(2 * ball_.radius / std::sqrt(1 - sine * sine));
     }
@@ -172,10 +171,10 @@ void check(const Ground& ground, const RenderOptions& options) {
            "finite numbers, and a normal other than 0,0,0");
 }
 
-// Where pixels see the plane.
+// The place of the plane that a pixel sees.
 struct SeenPlace {
     glm::dvec3 world{0.0};
-    double pixelWorld = 0;  // of the pixel, across the line of sight; 0: it is not seen
+    double pixelWorld = 0;  // of the pixel, across the line of sight; 0: the plane is not seen
 };
 
 class SeenGround {
@@ -204,7 +203,7 @@ class SeenGround {
                     [&](std::size_t y) { use(y * std::size_t(camera_.sizePixels.x), int(y)); });
     }
 
-    // The finest that a picture from a light is looked at, at the middle of the volume.
+    // Smallest pixel needed in a light's picture, at the middle of the volume.
     double finestPixel(const LightCamera& light) const {
         std::vector<double> ofRows(std::size_t(camera_.sizePixels.y),
                                    std::numeric_limits<double>::infinity());
@@ -235,7 +234,7 @@ class SeenGround {
         return t > 0 && depth >= camera_.nearWorld ? place : SeenPlace{};
     }
 
-    // So many rays away from where it begins.
+    // Size of a pixel at a distance in ray lengths.
     double pixelAt(double rays) const {
         if (camera_.projection == Projection::kLatlong)
             return rays * 2 * std::numbers::pi / camera_.sizePixels.x;
@@ -249,7 +248,7 @@ class SeenGround {
     std::vector<SeenPlace> places_;  // [height][width]
 };
 
-// What light brings to a place of a plane that it shines on from above; else 0.
+// Irradiance of a place of a plane; 0 if the light comes from below.
 glm::dvec3 irradianceAt(const Light& light, const glm::dvec3& world, const glm::dvec3& normal) {
     const glm::dvec3 color = light.strength * light.color;
     if (!light.positionWorld)
@@ -270,24 +269,25 @@ bool isAbove(const Light& light, const Ground& ground) {
     return glm::dot(towards, ground.normalWorld) > 0;
 }
 
-// How far the centres of a volume's voxels lie from the plane, in the world.
+// Heights of the lowest and the highest voxel centre above the plane, in the world.
 glm::dvec2 heightsOf(const Volume& volume, const glm::dvec3& point, const glm::dvec3& normal) {
     glm::dvec2 heights(std::numeric_limits<double>::infinity(),
                        -std::numeric_limits<double>::infinity());
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 world(volume.worldFromIndex * glm::dvec4(cornerOf(volume.box, corner), 1));
+        const glm::dvec3 world(volume.worldFromIndex() *
+                               glm::dvec4(cornerOf(volume.box(), corner), 1));
         const double height = glm::dot(world - point, normal);
         heights = {std::min(heights.x, height), std::max(heights.y, height)};
     }
     return heights;
 }
 
-// What of the volume lies above the plane; null if that is nothing.
+// Returns the part of the volume above the plane; null if there is none.
 std::shared_ptr<const Volume> volumeAbove(const Volume& volume, const Ground& ground,
                                           const glm::dvec3& normal, const Listener& listener) {
     const std::shared_ptr<const Volume> all(std::shared_ptr<const Volume>(), &volume);
     if (volume.empty()) return {};
-    constexpr double kSlack = 1e-6;  // of a voxel, as cuts have it
+    constexpr double kSlack = 1e-6;  // in voxels, like the tolerance of cuts
     const double slack = kSlack * smallestSize(volume);
     const glm::dvec2 heights = heightsOf(volume, ground.pointWorld, normal);
     if (heights.x >= -slack) return all;
@@ -306,7 +306,7 @@ std::shared_ptr<const Volume> volumeAbove(const Volume& volume, const Ground& gr
     }
 }
 
-// White, hiding as much as it does.
+// White optics of the same opacity.
 Optics hidingOptics(const Volume& volume, Optics optics) {
     if (!optics.range) optics.range = defaultRange(volume);
     optics.transferFunction.colors = {{0, glm::dvec3(1)}};
@@ -316,19 +316,19 @@ Optics hidingOptics(const Volume& volume, Optics optics) {
     return optics;
 }
 
-// What throws a shadow.
+// A volume that throws a shadow.
 struct Hiding {
     PreparedScene scene;
     SeenBall ball;
 };
 
-// Adds up what lights lose on their way to the places.
+// Sums the light that is lost on the way to the places.
 class LostLight {
   public:
     LostLight(const SeenGround& ground, const Camera& camera, const glm::dvec3& normal)
         : ground_(ground), camera_(camera), normal_(normal), lost_(ground.places().size()) {}
 
-    // @param hiding  what throws a shadow, each in a picture of its own
+    // @param hiding  volumes that throw shadows, each in a picture of its own
     void add(const std::vector<Hiding>& hiding, const Light& light) {
         std::vector<double> hidden(lost_.size());
         for (const Hiding& one : hiding) hide(one.scene, one.ball, light, hidden);
@@ -337,7 +337,7 @@ class LostLight {
         });
     }
 
-    // @param ambient  that nothing is lost of
+    // @param ambient  light that is never lost
     Image shares(const std::vector<Light>& lights, const glm::dvec3& ambient) const {
         Image image(camera_.sizePixels);
         forPlaces([&](std::size_t i, const SeenPlace& place) {
@@ -364,16 +364,15 @@ class LostLight {
         });
     }
 
-    // Adds what is hidden of a light by one that throws a shadow.
+    // Adds the share of a light hidden by a volume.
     void hide(const PreparedScene& scene, const SeenBall& ball, const Light& light,
               std::vector<double>& hidden) {
         const LightCamera lightCamera(light, ball, camera_);
-        // Half a pixel, for what is read between pixels is blurred; what is finer than half a voxel
-        // is not there.
+        // Half a pixel, because reading between pixels blurs; nothing is finer than half a voxel.
         const double finest = 0.5 * std::max(ground_.finestPixel(lightCamera), ball.voxel);
         const Camera camera = lightCamera.of(finest);
         requireMemory("`ground`", 16.0 * camera.sizePixels.x * camera.sizePixels.y);
-        // An empty one is no reason to warn.
+        // Without a listener, because an empty picture needs no warning.
         const Image image = scene.render(camera);
         forPlaces([&](std::size_t i, const SeenPlace& place) {
             const double share = alphaAt(image, camera, place.world);
@@ -419,14 +418,14 @@ Image renderGroundShadow(const Volume& volume, const RenderOptions& options, con
         hiding.push_back(
             {PreparedScene({one, hidingOptics(volume, options.optics)}, splat), SeenBall(*one)});
     };
-    // Voxels that lie far apart, for a picture of all would show none.
+    // One picture per far group, because a picture of all would show nothing.
     const std::optional<FarGroups> far = FarGroups::find(*above);
     for (std::size_t i = 0; far && i < far->size(); ++i)
         addHiding(std::make_shared<const Volume>(far->volume(i)));
     if (!far) addHiding(above);
     LostLight lost(seen, camera, normal);
     for (std::size_t i = 0; i < lights.size(); ++i) {
-        // Reported between pictures: each is short.
+        // Pictures are short, so progress is reported between them.
         lost.add(hiding, lights[i]);
         listener.report(double(i + 1) / double(lights.size()));
     }

@@ -11,40 +11,36 @@
 
 namespace deltasplat {
 
-/// A volume as lights see it: a ball around all of its voxels.
+/// A volume as lights see it: a ball around all voxels.
 struct SeenBall {
     explicit SeenBall(const Volume& volume);
 
     glm::dvec3 middle;
     double radius;
-    glm::dvec3 halfEdges[3];  ///< of the box around all voxels, footprints included
+    glm::dvec3 halfEdges[3];  ///< of the box around all voxels and their footprints
     double voxel;             ///< smallest size
 };
 
-/// A camera that stands where a light does and sees all of a volume: parallel lines of sight of
-/// light from far away; of a point near or within the volume to all sides.
-/// @param axes  right, up and direction of a camera: the picture is upright as that is, so that
-///              a mirrored scene has a mirrored picture
+/// A camera in place of a light that sees all of a volume: parallel for distant light; in all
+/// directions for a point near or within the volume.
+/// @param axes  a camera's right, up and direction, so that mirrored scenes have mirrored pictures
 class LightCamera {
   public:
     LightCamera(const Light& light, const SeenBall& ball, const Camera& axes);
 
-    /// How much larger than at the middle of the volume a pixel is at a place.
+    /// Size of a pixel at a place, relative to one at the volume's middle.
     double growthAt(const glm::dvec3& world) const;
-    /// Returns the camera.
-    /// @param pixelWorld  of a pixel, at the middle of the volume; it may become larger, lest the
-    ///                    picture has too many
+    /// @param pixelWorld  pixel size at the volume's middle; enlarged if pixels are too many
     Camera of(double pixelWorld) const;
 
   private:
     std::optional<glm::dvec3> eye_;
     Camera camera_;
     const SeenBall& ball_;
-    double distance_ = 0;  // at which pixels are as large as that
+    double distance_ = 0;  // where pixels have that size
 };
 
-/// Reads the alpha of a picture where a place in the world is seen, between pixels bilinearly; what
-/// is beyond the picture is clear.
+/// Reads the alpha of the picture at a place in the world, bilinearly; outside the picture 0.
 double alphaAt(const Image& image, const Camera& camera, const glm::dvec3& world);
 
 }  // namespace deltasplat

@@ -54,14 +54,14 @@ void checkOpacity(double opacity) {
                 "a number within 0.001..1");
 }
 
-// What is seen alone of what optics show; all hide as much as they did.
+// Only the light of absorbing matter; opacity stays.
 Optics withoutGlow(Optics optics) {
     std::erase_if(optics.parts, [](const MediumPart& part) { return !absorbs(part); });
     return optics;
 }
 
 Optics onlyGlow(Optics optics) {
-    // Without scattering what the volume shows shines by itself as well.
+    // Without `scattering` the volume would glow.
     if (optics.scattering) {
         optics.scattering->lights.clear();
         optics.scattering->ambient = glm::dvec3(0);
@@ -75,7 +75,7 @@ Optics onlyAmbient(const Optics& optics) {
     return ambient;
 }
 
-// @param light  empty: all of them
+// @param light  empty: all lights
 Optics onlyLights(const Optics& optics, std::optional<std::size_t> light) {
     Optics direct = withoutGlow(optics);
     direct.scattering->ambient = glm::dvec3(0);
@@ -83,7 +83,7 @@ Optics onlyLights(const Optics& optics, std::optional<std::size_t> light) {
     return direct;
 }
 
-// What hides, whatever its colour.
+// Same opacity, whatever the colour.
 Optics unlit(const Optics& optics) {
     Optics unlit = withoutGlow(optics);
     unlit.colorBy = ColorBy::kValue;
@@ -93,14 +93,13 @@ Optics unlit(const Optics& optics) {
     return unlit;
 }
 
-// All of it white.
 Optics outline(const Optics& optics) {
     Optics outline = unlit(optics);
     outline.transferFunction.colors = {{0, glm::dvec3(1)}};
     return outline;
 }
 
-// Layers from one on in red, green and blue, and others black.
+// Three layers from `firstLayer` on in red, green and blue, the others black.
 Optics mattes(const Optics& optics, int firstLayer) {
     Optics mattes = unlit(optics);
     int layer = 0;
@@ -115,8 +114,7 @@ Optics mattes(const Optics& optics, int firstLayer) {
     return mattes;
 }
 
-// White, lit along the world's axes, or against them, in red, green and blue: how much normals turn
-// to either side.
+// White, lit along or against the world's axes in red, green and blue: normals' components.
 Optics facing(const Optics& optics, double way) {
     Optics facing = outline(optics);
     if (facing.surface) facing.surface->color = glm::dvec3(1);
@@ -132,19 +130,19 @@ Optics facing(const Optics& optics, double way) {
     return facing;
 }
 
-// Places in the box of voxel centres, from 0 to 1 along each index.
+// Places in the box of voxel centres, 0 to 1 along each index.
 Optics places(const Optics& optics) {
     Optics places = unlit(optics);
     places.colorBy = ColorBy::kIndex;
     return places;
 }
 
-// Whether voxels have no colours but their own.
+// Whether voxels always have their own colours.
 bool isColored(const Optics& optics) {
     return optics.surface || severalAbsorb(optics);
 }
 
-// In the world; none where nothing is seen.
+// In the world; empty if nothing is seen.
 using Place = std::optional<glm::dvec3>;
 
 class AovRender {
@@ -156,7 +154,7 @@ class AovRender {
           aovOptions_(aovOptions),
           camera_(camera) {
         const Optics& optics = options.optics;
-        // All are drawn as the picture is: of all of its voxels, and none divided if its are not.
+        // All channels use the picture's voxels, undivided if the picture's are.
         const bool isWhole =
             optics.scattering || !optics.parts.empty() || optics.colorGrids ||
             (!options.splat.between && !optics.surface && optics.transferFunction.colorsJump());
@@ -216,7 +214,6 @@ class AovRender {
         channels_.push_back(std::move(channel));
     }
 
-    // One of a picture's four.
     void addChannel(const std::string& name, const Image& image, int channel) {
         addChannel(name, [&](std::size_t i) { return image.rgba[4 * i + std::size_t(channel)]; });
     }
@@ -244,7 +241,7 @@ class AovRender {
     }
 
     void addMattes(const Listener& listener) {
-        // Of white alone slices could be joined where the picture's are not.
+        // All white, slices might be joined that are not in the picture.
         options_.splat.mostJoined = joinedOfPicture();
         const auto layers = 1 + int(withoutGlow(options_.optics).parts.size());
         for (int first = 0; first < layers; first += 3) {
@@ -256,7 +253,6 @@ class AovRender {
         }
     }
 
-    // How many slices are joined in the picture that channels are beside.
     int joinedOfPicture() const {
         const Optics& optics = options_.optics;
         if (optics.scattering || optics.shading || !optics.parts.empty()) return 1;
@@ -274,7 +270,7 @@ class AovRender {
         return planPicture(scene, camera_, DrawnFor::kSlabs, {}).joined();
     }
 
-    // Made for the first channel that needs it, as those below.
+    // Made for the first channel that needs it, like the members below.
     const DepthBuilder& depths(const Listener& listener) {
         if (depths_) return *depths_;
         const Optics& optics = options_.optics;
@@ -313,16 +309,16 @@ class AovRender {
         }
     }
 
-    // World position of the mean place of a pixel.
+    // World position of a pixel's mean place.
     Place meanPlace(const float* rgba) const {
         if (!(rgba[3] > 0)) return {};
-        const IndexBox& box = volume_->box;
+        const IndexBox& box = volume_->box();
         glm::dvec3 index;
         for (int i = 0; i < 3; ++i) {
             const double share = std::clamp(double(rgba[i]) / rgba[3], 0.0, 1.0);
             index[i] = box.min[i] + share * (double(box.max[i]) - box.min[i]);
         }
-        return glm::dvec3(volume_->worldFromIndex * glm::dvec4(index, 1));
+        return glm::dvec3(volume_->worldFromIndex() * glm::dvec4(index, 1));
     }
 
     glm::dvec3 placeAt(glm::dvec2 pixel, double depth) const {
@@ -404,7 +400,7 @@ std::vector<ImageChannel> renderAovs(const Volume& volume, const RenderOptions& 
         throw Error(ErrorCode::kUsage, "`picture`", dimsText(aovOptions.picture->size) + " pixels",
                     dimsText(camera.sizePixels) + ", those of the camera");
     }
-    // A picture, and what is made of it, for each; and places.
+    // Per channel a picture and its results; and places.
     const double bytesPerPixel = (16 + 4 * 6) * double(aovs.size()) + sizeof(Place);
     requireMemory("`aovs`", bytesPerPixel * camera.sizePixels.x * camera.sizePixels.y);
     AovRender render(volume, options, aovOptions, camera);

@@ -28,7 +28,7 @@ namespace deltasplat {
 
 namespace {
 
-// Which sample a slice belongs to, wherever slabs begin.
+// Numbers the samples of slices, independent of slabs.
 class SampleNumbers {
   public:
     SampleNumbers(const Subdivision& parts, int slicesPerSample)
@@ -39,7 +39,7 @@ class SampleNumbers {
         const std::int64_t place = slice + origin_;
         return place / length_ - (place % length_ < 0);
     }
-    // The last slice of the same sample, towards larger or smaller ones.
+    // Last slice of the same sample, towards larger or smaller slices.
     std::int64_t last(int slice, bool towardsLarger) const {
         const std::int64_t first = of(slice) * length_ - origin_;
         return towardsLarger ? first + length_ - 1 : first;
@@ -65,7 +65,7 @@ void mergeBehind(Layer& front, const Layer& layer) {
     });
 }
 
-// Where a slice begins, in undivided slices: the same number for all parts of a volume.
+// Position of a slice's front face in undivided slices, the same for all parts of a volume.
 double faceBefore(int slice, const Subdivision& parts) {
     return parts.origin.x + double(slice) / parts.slices - 0.5;
 }
@@ -115,7 +115,7 @@ void DeepSink::take(const PlannedView& planned, RenderStats& stats, const Listen
     const std::vector<SeenSlab> seen = seenSlabs(input);
     const std::vector<DeepCut> cuts = cutInDepth(seen, frontToBack, parts, slicesPerSample_);
     const PlaneBox reach = reachOfAll(input, seen);
-    // What is shown may have to be changed for that.
+    // Showing may need a changed copy of the layer.
     const double layers = view->showChangesLayer() ? 2 : 1;
     requireMemory("layers of a deep picture", layers * layerBytes(reach, input.layout.channels));
     Layer merged(reach, input.layout.channels, planned.memory);
@@ -147,7 +147,7 @@ void DeepSink::take(const PlannedView& planned, RenderStats& stats, const Listen
 
 namespace {
 
-// The flat picture, and what it was before.
+// The flat picture, and its previous state.
 constexpr double kBytesPerPixel = 32;
 
 void checkSlices(int slices) {
@@ -162,22 +162,21 @@ std::string shortText(double number) {
             std::to_chars(text, text + sizeof text, number, std::chars_format::general, 6).ptr};
 }
 
-// From an eye, what lies behind it is not seen. Depths of a parallel picture begin at its camera,
-// which may be anywhere.
+// Refuses parallel cameras within the volume; an eye does not see voxels behind it anyway.
 void requireBefore(const Camera& camera, const Volume& volume) {
     if (camera.projection != Projection::kOrtho || volume.empty()) return;
     double nearest = std::numeric_limits<double>::infinity();
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec4 index(cornerOf(volume.box, corner), 1);
-        const glm::dvec3 away = glm::dvec3(volume.worldFromIndex * index) - camera.eyeWorld();
+        const glm::dvec4 index(cornerOf(volume.box(), corner), 1);
+        const glm::dvec3 away = glm::dvec3(volume.worldFromIndex() * index) - camera.eyeWorld();
         nearest = std::min(nearest, glm::dot(away, camera.direction));
     }
-    // Of a voxel there is half before its middle.
+    // Half a voxel lies before its middle.
     for (int axis = 0; axis < 3; ++axis) {
-        const glm::dvec3 step(volume.worldFromIndex[axis]);
+        const glm::dvec3 step(volume.worldFromIndex()[axis]);
         nearest -= 0.5 * std::abs(glm::dot(step, camera.direction));
     }
-    // Six digits of what is enough are enough.
+    // The suggested distance has six digits, so allow for its rounding.
     constexpr double kRounding = 1e-5;
     if (nearest >= -kRounding * std::abs(camera.targetDistanceWorld)) return;
     throw Error(ErrorCode::kUsage, "`distanceWorld`", numberText(camera.targetDistanceWorld),
@@ -219,7 +218,7 @@ RenderResult renderDeep(const Volume& volume, const RenderOptions& options,
         requireMemory("`sizePixels` " + dimsText(size), kBytesPerPixel * size.x * size.y);
         result.image = Image(size);
     };
-    // A camera that cannot be is refused before there is work.
+    // Refuse bad cameras before there is work.
     if (options.optics.parts.empty()) makePicture(volume);
     // The volume outlives the scene.
     const std::shared_ptr<const Volume> borrowed(std::shared_ptr<const Volume>(), &volume);

@@ -11,24 +11,22 @@
 
 namespace deltasplat {
 
-/// Slices of a view that make one sample, and which slabs they belong to.
+/// The slices of a sample, and their slabs.
 struct DeepCut {
-    int firstSlice;               ///< the smallest
-    int lastSlice;                ///< the largest
-    std::vector<SeenSlab> slabs;  ///< from the front on
+    int firstSlice;               ///< smallest number
+    int lastSlice;                ///< largest number
+    std::vector<SeenSlab> slabs;  ///< from front to back
 };
 
-/// Cuts what is seen of slabs at multiples of `slicesPerSample` undivided slices, or, if that is 0,
-/// at every slice, from the front on.
-/// @param seen  from the front on
+/// Cuts visible slabs at multiples of `slicesPerSample` undivided slices, or, if 0, at all slices.
+/// @param seen  from front to back; so is the result
 std::vector<DeepCut> cutInDepth(const std::vector<SeenSlab>& seen, bool frontToBack,
                                 const Subdivision& parts, int slicesPerSample);
 
-/// Renders the views of a picture cut by cut, from the front on, and shows each time what there is
-/// so far.
+/// Renders the views of a picture cut by cut, from front to back, and shows every stage.
 class DeepSink : public ViewSink {
   public:
-    /// @param slicesPerSample  as cutInDepth takes it
+    /// @param slicesPerSample  as cutInDepth
     /// @param image  of the camera's size, clear; becomes the flat picture
     DeepSink(int slicesPerSample, DeepStages& stages, Image& image)
         : slicesPerSample_(slicesPerSample), stages_(stages), image_(image) {}
@@ -44,7 +42,7 @@ class DeepSink : public ViewSink {
     int slicesPerSample_;
     DeepStages& stages_;
     Image& image_;
-    std::optional<Image> group_;  // of the group in hand
+    std::optional<Image> group_;  // of the current group
     std::optional<StagesBehind> behind_;
 };
 

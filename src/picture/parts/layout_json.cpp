@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// One list of members serves writing and reading: a visitor is shown each by name.
+// A visitor is called with each member's name, so that one list serves writing and reading.
 class Writer {
   public:
     template <typename T>
@@ -32,7 +32,7 @@ class Writer {
     Json json = Json::object();
 
   private:
-    // What is infinite, of a bound that is not known, JSON has no number for.
+    // JSON has no infinity, the value of an unknown bound.
     static Json jsonOf(double value) { return std::isfinite(value) ? Json(value) : Json(); }
     static Json jsonOf(int value) { return value; }
     static Json jsonOf(bool value) { return value; }
@@ -145,7 +145,7 @@ void visitView(Visitor& visit, ViewT& layout) {
     visit("thin_slices", place.parts.slices);
     visit("thin_within", place.parts.within);
     visit("joined_slices", place.parts.joined);
-    visit("joined_slant", place.parts.slants[1]);  // no more than two are
+    visit("joined_slant", place.parts.slants[1]);  // at most two slices are joined
     visit("thin_origin", place.parts.origin);
     visit("first_slice", place.firstSlice);
     visit("first_voxel", place.firstVoxel);
@@ -172,7 +172,7 @@ bool isFinite(const glm::dmat3& matrix) {
     return true;
 }
 
-// Whether pixels lie where whole numbers are still far from their ends.
+// Whether coordinates are far enough from overflow.
 bool isSane(const PlaneBox& box) {
     constexpr int kMost = 1 << 30;
     return box.min.x >= -kMost && box.min.y >= -kMost && box.max.x <= kMost && box.max.y <= kMost &&
@@ -208,7 +208,7 @@ void check(const Camera& camera) {
     }
 }
 
-// Whether slices can be joined so.
+// Whether slices can be joined this way.
 bool canBeJoined(const Subdivision& parts) {
     const glm::ivec2 slant = glm::abs(parts.slants[1]);
     if (parts.joined == 1) return slant == glm::ivec2(0);
@@ -225,7 +225,7 @@ void check(const ViewLayout& layout) {
     require(canBeJoined(place.parts), "slices joined that cannot be");
     const int joined = place.parts.joined;
     const glm::ivec2 slant = place.parts.slants[1];
-    // From an eye, regions of joined slices are those of one slant.
+    // From an eye, joined slices of a region have one slant.
     require(view.slopeStep.has_value() == (joined == 2 && view.eye) &&
                 (!view.slopeStep || *view.slopeStep == (view.frontToBack ? -slant : slant)),
             "slopes that are not those of joined slices");
@@ -351,7 +351,7 @@ PartHeader headerOf(const std::string& text) {
 }
 
 HeaderDifference differenceOf(const PartHeader& part, const PartHeader& first) {
-    // Who is told what differs wants to hear of options before what comes of them.
+    // Options first, because other differences follow from them.
     for (const auto* notes : {&first.notes.picture, &part.notes.picture}) {
         for (const auto& [name, text] : *notes) {
             const std::string got = textOf(part.notes.picture, name);

@@ -13,17 +13,16 @@
 
 namespace deltasplat {
 
-/// How the slabs of a view lie on its base plane, and what putting them together gives.
+/// How the slabs of a view lie on its base plane, and what they show together.
 struct ViewLayout {
     PlanePlace place;
-    int channels = 4;             ///< of layers: 1 where `place` has a colour
+    int channels = 4;             ///< of layers: 1 if `place` has a color
     PlaneBox reach;               ///< of all slabs
-    std::vector<PlaneBox> slabs;  ///< from the front on; empty ones are out of sight
-    ErrorBound bound;             ///< of what they look like together
+    std::vector<PlaneBox> slabs;  ///< from front to back; empty if out of sight
+    ErrorBound bound;             ///< of all slabs together
 };
 
-/// All that a picture's slabs have to be put together by, and to be shown: plain numbers, which
-/// know nothing of the volume.
+/// All that is needed to merge and show a picture's slabs: plain numbers, without the volume.
 struct PictureLayout {
     Camera camera;
     std::vector<ViewLayout> views;
@@ -31,29 +30,28 @@ struct PictureLayout {
     int slabs() const;
 };
 
-/// As JSON, every number as it is.
+/// Returns JSON with exact numbers.
 nlohmann::ordered_json layoutJson(const PictureLayout& layout);
-/// @throw nlohmann's exceptions for what is no layout; Error(kInput) for numbers that none has
+/// @throw nlohmann's exceptions for malformed JSON; Error(kInput) for impossible numbers
 PictureLayout layoutOf(const nlohmann::ordered_json& json);
 
-/// What a part of a picture says of itself.
+/// The header of a part of a picture.
 struct PartHeader {
     SlabShare share;
-    int firstSlab = 0;  ///< and up to lastSlab, without it, of all views one after the other
+    int firstSlab = 0;  ///< of [firstSlab, lastSlab), counted through all views
     int lastSlab = 0;
     PartNotes notes;
     Method method = Method::kAuto;
     Tolerance tolerance;
-    std::string content;  ///< of what it was rendered from: the same in all parts of a picture
+    std::string content;  ///< digest of the rendered data, equal in all parts of a picture
     PictureLayout layout;
 };
 
 std::string headerText(const PartHeader& header);
-/// @throw Error(kInput), nlohmann's exceptions: for what is no header
+/// @throw Error(kInput), nlohmann's exceptions: for malformed headers
 PartHeader headerOf(const std::string& text);
 
-/// Returns in what a part is of another picture than another one, as "`what` X" and "`what` Y";
-/// empty if in nothing.
+/// A difference of two parts' pictures, as "`what` X" and "`what` Y"; empty if there is none.
 struct HeaderDifference {
     std::string got;
     std::string expected;

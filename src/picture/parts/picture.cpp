@@ -25,7 +25,6 @@ namespace deltasplat {
 
 namespace {
 
-// Puts slabs together, and keeps what shows them.
 class KeepSink : public ViewSink {
   public:
     explicit KeepSink(Picture::Impl& picture) : picture_(picture) {}
@@ -97,7 +96,7 @@ void Picture::show(const PixelBox& part, Image& image) {
 
 namespace {
 
-// A part that is open, at its layers.
+// An open file of a part, positioned at its layers.
 struct OpenPart {
     std::filesystem::path path;
     SlabFileReader file;
@@ -120,7 +119,7 @@ OpenPart openPart(const std::filesystem::path& path) {
     throw Error(ErrorCode::kInput, file.string(), got, expected);
 }
 
-// @return parts in the order of their shares
+// @return the parts in the order of their shares
 std::vector<OpenPart> openAll(std::span<const std::filesystem::path> paths) {
     if (paths.empty())
         throw Error(ErrorCode::kUsage, "parts of a picture", "none", "all of a picture");
@@ -137,7 +136,7 @@ std::vector<OpenPart> openAll(std::span<const std::filesystem::path> paths) {
     return parts;
 }
 
-// Every share has to be there once.
+// Every share must be there exactly once.
 void requireAll(const std::vector<OpenPart>& parts) {
     const int count = parts.front().header.share.count;
     const auto refuseMissing = [&](int first, int last) {

@@ -12,32 +12,31 @@
 
 namespace deltasplat {
 
-/// Views whose slabs are put together, those in front first.
+/// Views with merged slabs, from front to back.
 struct Picture::Impl {
     struct View {
         PlaneView plane;
         ErrorBound bound;
-        Layer layer;        ///< finished: as PlaneView::showPart takes it
-        PixelBox part;      ///< pixels that may show it
-        bool coversOthers;  ///< lies behind views before it that may show something there, too
+        Layer layer;        ///< finished (PlaneView::finish)
+        PixelBox part;      ///< pixels that may show the view
+        bool coversOthers;  ///< whether earlier views may show something there, too
     };
 
     explicit Impl(const Camera& ofCamera) : camera(ofCamera) {}
 
     PixelBox whole() const { return {{0, 0}, camera.sizePixels}; }
-    /// Adds a view whose slabs are put together.
     void add(const PlaneView& plane, const ErrorBound& bound, Layer layer, const PixelBox& part,
              bool coversOthers) {
         plane.finish(layer);
         views.push_back({plane, bound, std::move(layer), part, coversOthers});
     }
-    /// Adds one behind those before it, wherever they are.
+    /// Adds a view behind all earlier ones.
     void addBehind(const PlaneView& plane, const ErrorBound& bound, Layer layer) {
         add(plane, bound, std::move(layer), whole(), !views.empty());
     }
 
     Camera camera;
-    KeptMemory memory;  ///< of layers
+    KeptMemory memory;  ///< for layers
     RenderStats stats;
     std::vector<View> views;
 };

@@ -30,7 +30,7 @@ std::uint32_t checksum(const void* bytes, std::size_t size) {
     return std::uint32_t(::crc32_z(0, static_cast<const Bytef*>(bytes), size));
 }
 
-// Some rows of a layer, counted from its first.
+// Rows of a layer, counted from its first row.
 struct Band {
     int first;
     int last;
@@ -65,7 +65,7 @@ Words wordsOf(const Layer& layer, const Band& band) {
     return words;
 }
 
-// Bytes of like meaning beside each other are easier to pack.
+// Grouping bytes of equal significance improves compression.
 Bytes shuffled(const Words& words) {
     Bytes bytes(sizeof(std::uint32_t) * words.size());
     for (std::size_t plane = 0; plane < sizeof(std::uint32_t); ++plane)
@@ -92,7 +92,7 @@ Bytes packed(const Words& words) {
     return result;
 }
 
-// @return none if they are others
+// @return empty if the bytes are damaged
 Words unpacked(const Bytes& from, std::size_t count) {
     Bytes bytes(sizeof(std::uint32_t) * count);
     uLongf size = uLongf(bytes.size());
@@ -102,7 +102,7 @@ Words unpacked(const Bytes& from, std::size_t count) {
     return unshuffled(bytes);
 }
 
-// @return whether there were as many words as rows have
+// @return whether the number of words fits the rows
 bool mergeBand(const Words& words, const PlaneBox& box, const Band& band, Layer& merged) {
     const auto rows = std::size_t(band.last - band.first);
     if (words.size() < 2 * rows) return false;
@@ -216,7 +216,7 @@ void SlabFileReader::mergeNext(const PlaneBox& box, Layer& merged) {
         Bytes bytes;
     };
     const int channels = merged.channels;
-    // Bands are read so many at once, and unpacked by all threads.
+    // Bands are read in batches and unpacked on all threads.
     constexpr int kAtOnce = 64;
     const int count = bandCount(box, channels);
     for (int first = 0; first < count; first += kAtOnce) {

@@ -16,17 +16,17 @@
 
 namespace deltasplat {
 
-/// Writes a file of layers of slabs: a line that says what it is, a header of text, and the layers
-/// in bands of rows, each packed by zlib and with a checksum. All numbers are little-endian.
+/// Writes a file of layers of slabs: a line that names the format, a text header, and the layers in
+/// bands of rows, each packed by zlib and with a checksum. All numbers are little-endian.
 ///
 ///     "deltasplat slabs 1\n"
 ///     bytes of the header, its CRC-32 (4 bytes each), the header
 ///     for each slab, for each band of bandRows() rows from the top on:
-///         words, bytes that they are packed into, CRC-32 of these (4 bytes each), these
+///         number of words, number of packed bytes, their CRC-32 (4 bytes each), packed bytes
 ///     "end\n"
 ///
-/// The words of a band are the two ends of each row's span, then the floats within spans; packed
-/// are the first bytes of all words, then the second ones, and so on.
+/// The words of a band are the two ends of each row's span, then the floats within spans. Packed
+/// are first the first bytes of all words, then the second bytes, and so on.
 class SlabFileWriter {
   public:
     SlabFileWriter(const std::filesystem::path& file, std::string_view header);
@@ -42,17 +42,17 @@ class SlabFileWriter {
     AtomicFile file_;
 };
 
-/// Reads such a file, which may have come from anywhere.
+/// Reads such a file. The file is not trusted.
 class SlabFileReader {
   public:
-    /// Reads all before the layers.
-    /// @throw Error(kInput) if that is none, or another version's
+    /// Reads everything before the layers.
+    /// @throw Error(kInput) if the format or its version is another
     explicit SlabFileReader(const std::filesystem::path& file);
 
     const std::string& header() const { return header_; }
-    /// Reads the next layer, of this box and as many channels as `merged`, and puts it behind that,
-    /// which holds the box. Multi-threaded.
-    /// @throw Error(kInput) if it is damaged or cut short
+    /// Reads the next layer, with the given box and the channels of `merged`, and puts it behind
+    /// `merged`, whose box includes it. Multi-threaded.
+    /// @throw Error(kInput) if the layer is damaged or cut short
     void mergeNext(const PlaneBox& box, Layer& merged);
     /// @throw Error(kInput) if the file does not end here
     void finish();
@@ -67,7 +67,7 @@ class SlabFileReader {
     std::string header_;
 };
 
-/// How many rows of a layer are packed together.
+/// Rows of a layer that are packed together.
 int bandRows(const PlaneBox& box, int channels);
 
 }  // namespace deltasplat

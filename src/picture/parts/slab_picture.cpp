@@ -25,13 +25,10 @@ namespace deltasplat {
 
 namespace {
 
-/// Returns a number of what the slabs of a view are rendered from, its voxels and their colours:
-/// others have another one, but for chance. Of lights it knows nothing. Deterministic;
-/// multi-threaded.
+/// Returns a hash of a view's voxels and colours, not lights. Deterministic; multi-threaded.
 std::uint64_t digestOf(const PictureView& view);
 
-// 64-bit words multiplied into a state, as MurmurHash3's finalizer mixes (Austin Appleby, public
-// domain).
+// Hashes 64-bit words with MurmurHash3's finalizer (Austin Appleby, public domain).
 class Digest {
   public:
     void add(std::uint64_t word) {
@@ -105,7 +102,7 @@ PictureLayout layoutOf(const SlabPicture::Impl& picture) {
     return layout;
 }
 
-// What the slabs of a picture show, as PartHeader has it.
+// Returns PartHeader::content.
 std::string contentOf(const SlabPicture::Impl& picture) {
     std::string text;
     for (const auto& view : picture.views) {
@@ -116,7 +113,7 @@ std::string contentOf(const SlabPicture::Impl& picture) {
     return text;
 }
 
-// About how long a slab takes: what is stamped, and slices that are read.
+// Estimated work for a slab: stamps, and slices that are read.
 double workOf(const SlabPicture::Impl& picture, const SlabPicture::Impl::Place& place) {
     constexpr double kWordsOfSlice = 16;
     const SlabInput& input = picture.inputOf(place);
@@ -127,7 +124,7 @@ double workOf(const SlabPicture::Impl& picture, const SlabPicture::Impl::Place& 
     return words + kWordsOfSlice * (seen.lastSlice - seen.firstSlice + 1);
 }
 
-// Cuts the slabs of a picture where their work passes each share of all.
+// Cuts the slabs of a picture into shares of equal work.
 class SlabShares {
   public:
     explicit SlabShares(const SlabPicture::Impl& picture) {
@@ -137,7 +134,7 @@ class SlabShares {
         }
     }
 
-    // The slab that the parts up to one of so many end before.
+    // Returns the end of the slabs of the first `share` parts of `count`.
     int endOf(int share, int count) const {
         double before = 0;
         for (std::size_t slab = 0; slab < work_.size(); ++slab) {
@@ -159,6 +156,79 @@ void check(const SlabShare& share) {
     throw Error(ErrorCode::kUsage, "`share`", shareText(share),
                 "some of at most 10000, counted from 1");
 }
+
+[[noreturn]] void refuse(const std::string& got, const std::string& expected) {
+    throw Error(ErrorCode::kUsage, "layers of a picture", got, expected);
+}
+
+std::string boxText(const glm::ivec2& min, const glm::ivec2& max) {
+    const glm::i64vec2 size = glm::i64vec2(max) - glm::i64vec2(min);
+    return std::to_string(size.x) + "x" + std::to_string(size.y) + " at " + std::to_string(min.x) +
+           "," + std::to_string(min.y);
+}
+
+// Layers are not trusted.
+void requireFits(const SlabLayer& layer, const PlaneBox& box, int channels) {
+    if (layer.min != box.min || layer.max != box.max || layer.channels != channels) {
+        refuse("one of " + boxText(layer.min, layer.max) + ", channels " +
+                   std::to_string(layer.channels),
+               boxText(box.min, box.max) + ", channels " + std::to_string(channels) + " for slab " +
+                   std::to_string(layer.slab));
+    }
+    const glm::ivec2 size = box.size();
+    const auto isInside = [&](const glm::ivec2& span) {
+        return span.x >= span.y || (span.x >= 0 && span.y <= size.x);
+    };
+    if (layer.values.size() != std::size_t(channels) * std::size_t(size.x) * std::size_t(size.y) ||
+        layer.spans.size() != std::size_t(size.y) ||
+        !std::all_of(layer.spans.begin(), layer.spans.end(), isInside)) {
+        refuse("values or spans of another size than the layer's of slab " +
+                   std::to_string(layer.slab),
+               "those that were rendered");
+    }
+}
+
+// Returns the layers in the order of slabs.
+std::vector<const SlabLayer*> ordered(const SlabPicture::Impl& picture,
+                                      std::span<const SlabLayer> layers) {
+    std::vector<const SlabLayer*> bySlab(picture.slabs.size());
+    for (const SlabLayer& layer : layers) {
+        picture.placeOf(layer.slab);
+        const SlabLayer*& known = bySlab[std::size_t(layer.slab)];
+        if (known) refuse("slab " + std::to_string(layer.slab) + " twice", "each once");
+        known = &layer;
+    }
+    const auto missing = std::find(bySlab.begin(), bySlab.end(), nullptr);
+    if (missing != bySlab.end()) {
+        refuse("none for slab " + std::to_string(missing - bySlab.begin()),
+               "one for each of " + std::to_string(bySlab.size()) + " slabs");
+    }
+    return bySlab;
+}
+
+class SlabSink : public ViewSink {
+  public:
+    explicit SlabSink(SlabPicture::Impl& picture) : picture_(picture) {}
+
+    DrawnFor drawnFor() const override { return DrawnFor::kSlabs; }
+    void beginGroup(std::shared_ptr<const PreparedScene::Impl> group, const PixelBox&) override {
+        picture_.groups.push_back(std::move(group));
+    }
+    void endGroup() override {}
+    void take(const PlannedView& planned, RenderStats&, const Listener&) override {
+        picture_.views.push_back(planned.view(planned.axis));
+        picture_.seen.push_back(seenSlabs(picture_.views.back()->slabs()));
+        for (int slab = 0; slab < int(picture_.seen.back().size()); ++slab)
+            picture_.slabs.push_back({picture_.views.size() - 1, slab});
+    }
+    // Not known yet.
+    bool isAnyBeyond(float) const override { return true; }
+
+  private:
+    SlabPicture::Impl& picture_;
+};
+
+}  // namespace
 
 void writeSlabs(const SlabPicture& picture, const SlabShare& share, const PartNotes& notes,
                 const std::filesystem::path& file, const Listener& listener) {
@@ -185,85 +255,11 @@ void writeSlabs(const SlabPicture& picture, const SlabShare& share, const PartNo
     writer.finish();
 }
 
-[[noreturn]] void refuse(const std::string& got, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, "layers of a picture", got, expected);
-}
-
-std::string boxText(const glm::ivec2& min, const glm::ivec2& max) {
-    const glm::i64vec2 size = glm::i64vec2(max) - glm::i64vec2(min);
-    return std::to_string(size.x) + "x" + std::to_string(size.y) + " at " + std::to_string(min.x) +
-           "," + std::to_string(min.y);
-}
-
-// A layer may have come from anywhere.
-void requireFits(const SlabLayer& layer, const PlaneBox& box, int channels) {
-    if (layer.min != box.min || layer.max != box.max || layer.channels != channels) {
-        refuse("one of " + boxText(layer.min, layer.max) + ", channels " +
-                   std::to_string(layer.channels),
-               boxText(box.min, box.max) + ", channels " + std::to_string(channels) + " for slab " +
-                   std::to_string(layer.slab));
-    }
-    const glm::ivec2 size = box.size();
-    const auto isInside = [&](const glm::ivec2& span) {
-        return span.x >= span.y || (span.x >= 0 && span.y <= size.x);
-    };
-    if (layer.values.size() != std::size_t(channels) * std::size_t(size.x) * std::size_t(size.y) ||
-        layer.spans.size() != std::size_t(size.y) ||
-        !std::all_of(layer.spans.begin(), layer.spans.end(), isInside)) {
-        refuse("values or spans of another size than the layer's of slab " +
-                   std::to_string(layer.slab),
-               "those that were rendered");
-    }
-}
-
-// All layers by their slabs.
-std::vector<const SlabLayer*> ordered(const SlabPicture::Impl& picture,
-                                      std::span<const SlabLayer> layers) {
-    std::vector<const SlabLayer*> bySlab(picture.slabs.size());
-    for (const SlabLayer& layer : layers) {
-        picture.placeOf(layer.slab);
-        const SlabLayer*& known = bySlab[std::size_t(layer.slab)];
-        if (known) refuse("slab " + std::to_string(layer.slab) + " twice", "each once");
-        known = &layer;
-    }
-    const auto missing = std::find(bySlab.begin(), bySlab.end(), nullptr);
-    if (missing != bySlab.end()) {
-        refuse("none for slab " + std::to_string(missing - bySlab.begin()),
-               "one for each of " + std::to_string(bySlab.size()) + " slabs");
-    }
-    return bySlab;
-}
-
-// Keeps the views of a picture, and counts their slabs.
-class SlabSink : public ViewSink {
-  public:
-    explicit SlabSink(SlabPicture::Impl& picture) : picture_(picture) {}
-
-    DrawnFor drawnFor() const override { return DrawnFor::kSlabs; }
-    void beginGroup(std::shared_ptr<const PreparedScene::Impl> group, const PixelBox&) override {
-        picture_.groups.push_back(std::move(group));
-    }
-    void endGroup() override {}
-    void take(const PlannedView& planned, RenderStats&, const Listener&) override {
-        picture_.views.push_back(planned.view(planned.axis));
-        picture_.seen.push_back(seenSlabs(picture_.views.back()->slabs()));
-        for (int slab = 0; slab < int(picture_.seen.back().size()); ++slab)
-            picture_.slabs.push_back({picture_.views.size() - 1, slab});
-    }
-    // Nobody knows yet.
-    bool isAnyBeyond(float) const override { return true; }
-
-  private:
-    SlabPicture::Impl& picture_;
-};
-
-}  // namespace
-
 SlabPicture::Impl::Impl(const PreparedScene& ofScene, const Camera& ofCamera,
                         const Listener& listener)
     : scene(ofScene), camera(ofCamera) {
     const PreparedScene::Impl& prepared = scene.impl();
-    // Looks of more slices have numbers that are others in each process.
+    // Numbers of looks of more than two slices differ between processes.
     if (prepared.options.mostJoined > 2) {
         throw Error(ErrorCode::kUsage, "`mostJoined`",
                     std::to_string(prepared.options.mostJoined) + " for slabs", "1 or 2");

@@ -11,9 +11,9 @@
 
 namespace deltasplat {
 
-/// The views of a picture, and their slabs one after the other.
+/// The views of a picture, and their slabs in one list.
 struct SlabPicture::Impl {
-    /// A slab of a view of which something may be seen, counted from the front.
+    /// A slab of a view that may be visible, counted from the front.
     struct Place {
         std::size_t view;
         int slab;
@@ -27,15 +27,14 @@ struct SlabPicture::Impl {
     const SeenSlab& seenOf(const Place& place) const {
         return seen[place.view][std::size_t(place.slab)];
     }
-    /// Of what is out of sight there is no layer.
+    /// Empty if the slab is out of sight.
     PlaneBox reachOf(const Place& place) const;
-    /// Renders a slab.
     Layer render(int slab, const Listener& listener) const;
 
     PreparedScene scene;
     Camera camera;
     mutable KeptMemory memory;
-    std::vector<std::shared_ptr<const PreparedScene::Impl>> groups;  ///< that lie far apart
+    std::vector<std::shared_ptr<const PreparedScene::Impl>> groups;  ///< groups that lie far apart
     std::vector<std::unique_ptr<const PictureView>> views;
     std::vector<std::vector<SeenSlab>> seen;  ///< [view]
     std::vector<Place> slabs;

@@ -34,66 +34,61 @@ namespace deltasplat {
 
 namespace {
 
-/// What rays are followed through, for some pixels of a picture.
+/// A volume and the pixels for which rays go through it.
 struct RayTask {
     const Volume& volume;  ///< not empty
     const RenderOptions& options;
     const Camera& camera;
-    PixelBox part;            ///< what images are of
-    IndexBox whole;           ///< of the volume, or of all that it is a group of
-    bool keepsFound = false;  ///< as ValuePainter
+    PixelBox part;            ///< the part that images show
+    IndexBox whole;           ///< of the whole volume, also for one of its groups
+    bool keepsFound = false;  ///< as in ValuePainter
 };
 
-/// Checks what only modes other than kComposite are asked.
+/// Checks the options of modes other than kComposite.
 /// @throw Error(kUsage) naming the option
 void checkRayOptions(const RenderOptions& options);
 
-/// Returns what lines of sight meet of a value in a mode other than kComposite. The smallest of
-/// values is the largest of what they are below 0.
+/// Returns a ray mode's map of values; the minimum is the maximum of negated values.
 ValueMap valueMapOf(const RenderOptions& options);
 
-/// Whether a mode shows sums along the line of sight; the others show values, and whether there are
-/// any.
+/// Whether a mode shows sums along lines of sight; other modes show values, if there are any.
 bool showsSums(Mode mode);
 
-/// Warns of what makes the picture another than who asked for it may think: numbers that 32-bit
-/// floats do not hold, radiographs of what is no CT scan, and
-/// x-rays of what is one.
-/// @param slices     that are added up
-/// @param stepWorld  length of the way through one
+/// Warns of numbers beyond floats, radiographs of other than CT scans, and x-rays of CT scans.
+/// @param slices     number of summed slices
+/// @param stepWorld  length of the way through a slice
 void warnOfValues(const Volume& volume, const RenderOptions& options, int slices, double stepWorld,
                   const Listener& listener);
 
-/// What a pixel that shows values has found.
+/// The finding of a pixel that shows values.
 struct FoundValue {
-    float value = 0;     ///< as mapped
-    float shade = 1;     ///< as DepthShade
+    float value = 0;     ///< mapped
+    float shade = 1;     ///< see DepthShade
     bool isMet = false;  ///< whether there is a value
-    float weight = 1;    ///< of means: how much of active voxels has been met
+    float weight = 1;    ///< for means: amount of active voxels
 };
 
-/// Makes pixels of values, as colours or as numbers; or keeps in them what has been found, for
-/// several to be put together.
+/// Writes values to pixels as colours or numbers; or keeps findings there for merging.
 class ValuePainter {
   public:
-    /// @param rays  of which values are
+    /// @param rays  source of the values
     ValuePainter(const Volume& volume, const RenderOptions& options, const RayVolume& rays,
                  bool keepsFound = false);
 
     void paint(const FoundValue& found, float* rgba) const;
-    /// Returns what a pixel has kept.
+    /// Returns the finding kept in a pixel.
     static FoundValue keptIn(const float* rgba) { return {rgba[0], rgba[1], rgba[3] > 0, rgba[2]}; }
 
   private:
     float lowest_;
     float highest_;
-    float darkest_;  // what shading leads to
+    float darkest_;  // colour at full shade
     float sign_;
     bool keepsFound_;
     std::optional<ValueColors> colors_;
 };
 
-/// Turns integrals of mu, which all channels of a picture hold, into what x-rays leave.
+/// Turns integrals of mu, in all channels of a picture, into transmitted x-rays.
 void showTransmission(const Drr& drr, Image& image);
 
 void requirePositive(const char* option, double number) {
@@ -101,16 +96,17 @@ void requirePositive(const char* option, double number) {
     throw Error(ErrorCode::kUsage, option, numberText(number), "a finite number > 0");
 }
 
-// Rays reckon in 32-bit floats: says where these are not enough.
+// Warns if 32-bit floats, which rays use, do not suffice.
 void warnOfFloats(const Volume& volume, const RenderOptions& options, int slices, double stepWorld,
                   const Listener& listener) {
     const ValueMap map = valueMapOf(options);
     const bool sums = showsSums(options.mode);
-    const double largest = std::max(std::abs(map(volume.valueMin)), std::abs(map(volume.valueMax)));
-    // Below, numbers lose digits: 1e5 times that is what 1e-5 of the largest value needs.
+    const double largest =
+        std::max(std::abs(map(volume.valueMin())), std::abs(map(volume.valueMax())));
+    // Smaller numbers lose digits: 1e5 times the least float for 1e-5 of the largest value.
     constexpr double kSmallest = 1e5 * double(std::numeric_limits<float>::min());
     const std::string values = "values of up to " + numberText(largest);
-    // Values are added up before they are multiplied by the length of a step.
+    // Values are summed before the sum is multiplied by the step.
     const double step = sums ? stepWorld : 1;
     const double sum = largest * slices * std::max(step, 1.0);
     if (largest > kLargestRayValue) {
@@ -128,18 +124,18 @@ void warnOfFloats(const Volume& volume, const RenderOptions& options, int slices
     }
 }
 
-// Attenuation is known of Hounsfield units only.
+// Attenuation is known for Hounsfield units only.
 void warnOfOtherUnits(const Volume& volume, const Listener& listener) {
     if (isHounsfield(volume)) return;
     const std::string values =
-        "values from " + numberText(volume.valueMin) + " to " + numberText(volume.valueMax);
+        "values from " + numberText(volume.valueMin()) + " to " + numberText(volume.valueMax());
     listener.warn("`mode` drr: is for Hounsfield units (air -1000, water 0), which " + values +
-                  (volume.space.empty()
+                  (volume.space().empty()
                        ? " of a file that names no patient's space may not be"
                        : ", with hardly any air or hardly any soft tissue, seem not to be"));
 }
 
-// Integrals of Hounsfield units mean little: air counts less than what is outside of the scan.
+// Integrals of Hounsfield units mean little: air counts less than the outside of the scan.
 void warnOfHounsfield(const Volume& volume, const Listener& listener) {
     if (!isHounsfield(volume)) return;
     listener.warn(
@@ -199,7 +195,7 @@ void ValuePainter::paint(const FoundValue& found, float* rgba) const {
         rgba[2] = found.weight;
         return;
     }
-    // No -0.
+    // Adding 0 avoids -0.
     const float value = sign_ * std::clamp(found.value, lowest_, highest_) + 0.0f;
     if (colors_) {
         const glm::vec3 color = found.shade * colors_->colorOf(value);
@@ -221,8 +217,8 @@ void showTransmission(const Drr& drr, Image& image) {
     });
 }
 
-// Lines of sight along each side of a tile, of which what they read of eight slices stays in the
-// second-level cache. Of largest and smallest values much is left out, and more of small tiles.
+// Lines of sight per side of a tile. Values of eight slices for a tile stay in the second-level
+// cache. Maxima and minima skip much, and more in small tiles.
 int tileLines(Mode mode) {
     return mode == Mode::kMip || mode == Mode::kMin ? 32 : 64;
 }
@@ -235,7 +231,7 @@ RayRule ruleOf(Mode mode) {
     return mode == Mode::kMin ? RayRule::kMaxActive : RayRule::kMax;
 }
 
-// The farthest that anything of the box is from the camera, and the nearest that is seen.
+// Range of distances: from the nearest visible place to the farthest corner of the box.
 DepthShade shadeOf(const RayTask& task) {
     const Camera& camera = task.camera;
     const double darker = task.options.mode == Mode::kMip ? task.options.depthShade : 0;
@@ -244,13 +240,14 @@ DepthShade shadeOf(const RayTask& task) {
                      -std::numeric_limits<double>::infinity()};
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec4 index(cornerOf(task.whole, corner), 1);
-        const glm::dvec3 away = glm::dvec3(task.volume.worldFromIndex * index) - camera.eyeWorld();
+        const glm::dvec3 away =
+            glm::dvec3(task.volume.worldFromIndex() * index) - camera.eyeWorld();
         const double depth = panorama ? glm::length(away) : glm::dot(away, camera.direction);
         shade.nearest = std::min(shade.nearest, depth);
         shade.farthest = std::max(shade.farthest, depth);
     }
     if (camera.projection == Projection::kOrtho) return shade;
-    // A face may be nearer to what sees all sides than its corners.
+    // A face may be nearer to a panorama's eye than its corners.
     shade.nearest = panorama ? camera.nearWorld : std::max(shade.nearest, camera.nearWorld);
     return shade;
 }
@@ -259,7 +256,6 @@ std::size_t rowMajor(glm::ivec2 pixel, int width) {
     return std::size_t(pixel.y) * std::size_t(width) + std::size_t(pixel.x);
 }
 
-// All that the pixels of a picture have in common.
 class RayPicture {
   public:
     RayPicture(const RayTask& task, const RayVolume& rays)
@@ -290,7 +286,7 @@ class RayPicture {
     }
 
   private:
-    // What the lines of sight of a pixel find.
+    // Sums over a pixel's lines of sight.
     struct PixelSum {
         double value = 0, shade = 0, weight = 0;
         std::int64_t met = 0;
@@ -312,7 +308,7 @@ class RayPicture {
         const glm::ivec2 from = n * (part_.min + first), to = n * (part_.min + last);
         const PixelBox seen{glm::max(from, lines_.seen().min), glm::min(to, lines_.seen().max)};
         const int side = tileLines(mode_);
-        // A pixel of many lines is looked at part by part.
+        // A pixel of many lines is processed in parts.
         for (int top = from.y + (seen.min.y - from.y) / side * side; top < seen.max.y;
              top += side) {
             for (int left = from.x + (seen.min.x - from.x) / side * side; left < seen.max.x;
@@ -339,8 +335,8 @@ class RayPicture {
         }
     }
 
-    // Square by square: lines that are followed together lie close to each other.
-    // @param begin  where squares begin
+    // Squares keep lines that are followed together close to each other.
+    // @param begin  of the squares
     void follow(const PixelBox& wanted, glm::ivec2 begin, Tile& tile) const {
         tile.places.clear();
         tile.lines.clear();
@@ -370,7 +366,7 @@ class RayPicture {
         ++sum.met;
     }
 
-    // The mean of what a pixel's lines of sight find.
+    // Writes the mean over a pixel's lines of sight.
     void paint(const PixelSum& sum, float* rgba) const {
         const double all = double(lines_.perSide()) * lines_.perSide();
         const auto met = double(sum.met);
@@ -406,7 +402,7 @@ void renderTask(const RayTask& task, const Listener& listener, Image& image, Ren
     stats.renderSeconds += seconds;
 }
 
-// @param apart  how far lines of sight are apart, in voxels
+// @param apart  distance of lines of sight in voxels
 void warnOfLines(double apart, const Camera& camera, const Listener& listener) {
     constexpr double kHardlyApart = 1.5;
     if (apart <= kHardlyApart) return;
@@ -424,8 +420,8 @@ bool isEmpty(const Image& image) {
     return true;
 }
 
-// Puts what a group of voxels shows to what others do.
-// @param found  of a part of the picture
+// Merges a group's findings into the picture.
+// @param found  for a part of the picture
 void putTogether(const Image& found, glm::ivec2 first, Mode mode, Image& all) {
     parallelFor(std::size_t(found.size.y), [&](std::size_t y) {
         const float* rgba = found.pixel(0, int(y));
@@ -453,15 +449,14 @@ void putTogether(const Image& found, glm::ivec2 first, Mode mode, Image& all) {
     });
 }
 
-// Widens a part to the tiles that a picture of the volume alone has: bits are those of tiles.
+// Widens a part to the tiles of a picture of the volume alone, because bits depend on tiles.
 PixelBox wholeTiles(const PixelBox& part, const Volume& volume, const Camera& camera, Mode mode) {
     const int pixels = std::max(1, tileLines(mode) / countLines(volume, camera).perSide);
     return {part.min / pixels * pixels,
             glm::min((part.max + pixels - 1) / pixels * pixels, camera.sizePixels)};
 }
 
-// Follows rays through groups of voxels that lie far apart, one after the other. Returns whether it
-// has said that the picture shows no more than dots.
+// Follows rays through far groups one by one. Returns whether it warned of a picture of dots.
 bool renderFar(const FarGroups& far, const RayTask& whole, const Listener& listener,
                RenderResult& result) {
     const std::vector<std::size_t> order = far.frontToBack(whole.camera);
@@ -481,7 +476,7 @@ bool renderFar(const FarGroups& far, const RayTask& whole, const Listener& liste
     const bool saysDots = far.warnOfDots(whole.camera, listener);
     if (!saysDots) warnOfLines(apart, whole.camera, listener);
     if (showsSums(whole.options.mode)) return saysDots;
-    // The range of values is that of all in whatever group.
+    // The range of values is the whole volume's in any group.
     const Volume one = far.volume(0);
     const RayVolume rays = makeRayVolume(one, RayRule::kMax, valueMapOf(whole.options));
     const ValuePainter painter(whole.volume, whole.options, rays);
@@ -499,16 +494,16 @@ void renderRays(const Volume& volume, const RenderOptions& options, const Listen
                 RenderResult& result) {
     checkRayOptions(options);
     const bool parallel = options.camera.projection == Projection::kOrtho;
-    // Of pictures from an eye, where it goes from region to region, the middle's.
+    // For pictures from an eye, whose axis varies, the middle's.
     const Factorization view =
-        factorize(result.camera, volume.worldFromIndex,
+        factorize(result.camera, volume.worldFromIndex(),
                   parallel ? options.splat.resolution : std::optional<double>(1));
     result.stats.sliceAxis = view.sliceAxis;
-    result.stats.slices = volume.box.dims()[view.sliceAxis];
+    result.stats.slices = volume.box().dims()[view.sliceAxis];
     if (!volume.empty()) {
         const std::optional<FarGroups> far = FarGroups::find(volume);
         const RayTask whole{
-            volume, options, result.camera, {{0, 0}, result.camera.sizePixels}, volume.box};
+            volume, options, result.camera, {{0, 0}, result.camera.sizePixels}, volume.box()};
         warnOfValues(volume, options, far ? 1 : result.stats.slices, view.sliceStepWorld, listener);
         bool saysDots = false;
         if (far) {
@@ -517,7 +512,7 @@ void renderRays(const Volume& volume, const RenderOptions& options, const Listen
             warnOfLines(countLines(volume, result.camera).voxelsApart, result.camera, listener);
             renderTask(whole, listener, result.image, result.stats);
         }
-        // Sums may be 0 of what is there.
+        // Sums may be 0 though there are voxels.
         if (!showsSums(options.mode) && !saysDots && isEmpty(result.image))
             listener.warn(emptyPictureText(volume, "fills less than half of any pixel"));
     }

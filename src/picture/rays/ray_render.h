@@ -5,9 +5,8 @@
 
 namespace deltasplat {
 
-/// Renders what lines of sight meet of a volume: all modes but kComposite. Fills in the picture,
-/// which has its size already and is transparent, and the stages' part of the stats.
-/// @throw as `render`
+/// Renders all modes but kComposite. Fills in the picture, which has its size and is transparent,
+/// and its part of the stats. @throw as `render`
 void renderRays(const Volume& volume, const RenderOptions& options, const Listener& listener,
                 RenderResult& result);
 
