@@ -309,7 +309,7 @@ TEST(CutVolume, masksByIndex) {
 
     // By whole voxels, and as exactly as a file of floats states it.
     test::changed(*mask)->worldFromIndex[3] +=
-        3.0 * test::changed(*mask)->worldFromIndex[1] + glm::dvec4(1e-5, 0, 0, 0);
+        3.0 * mask->worldFromIndex()[1] + glm::dvec4(1e-5, 0, 0, 0);
     expectCut(volume, cutVolume(volume, cut, warnings.listener()),
               [&](const glm::ivec3& at) { return isKept(*mask, at - glm::ivec3(0, 3, 0)); });
     EXPECT_EQ(warnings.text, "");
@@ -346,8 +346,8 @@ TEST(CutVolume, masksByPlace) {
     cut.mask = mask;
     Warnings warnings;
     expectCut(volume, cutVolume(volume, cut, warnings.listener()), [&](const glm::ivec3& at) {
-        const glm::dvec3 place = worldOf(volume.worldFromIndex(), at) -
-                                 glm::dvec3(test::changed(*mask)->worldFromIndex[3]);
+        const glm::dvec3 place =
+            worldOf(volume.worldFromIndex(), at) - glm::dvec3(mask->worldFromIndex()[3]);
         return isKept(*mask, place / glm::dvec3(2.2, 1.7, 1.2));
     });
     EXPECT_EQ(warnings.text,

@@ -21,6 +21,7 @@ Volume volumeOf(const CodeBook& book, const std::vector<std::uint64_t>& countOfC
         volume.valueMax = book.valueOf(Code(code));
         volume.activeCount += countOfCode[code];
     }
+    volume.box = {glm::ivec3(0), glm::ivec3(0)};
     return Volume(std::move(volume));
 }
 

@@ -147,9 +147,9 @@ TEST(WriteGrids, PlacesAreExact) {
     write("out.vdb", volume);
     EXPECT_EQ(readVolume("out.vdb").worldFromIndex(), volume.worldFromIndex());
 
-    test::changed(volume)->worldFromIndex = glm::scale(glm::dmat4(1), glm::dvec3(1e-20, 1, 1));
+    test::changed(volume)->worldFromIndex = glm::scale(glm::dmat4(1), glm::dvec3(2e-15, 1, 1));
     expectError(ErrorCode::kFailed,
-                "voxel size: got 1e-20,1,1 without a unit of length; expected a volume of at least "
+                "voxel size: got 2e-15,1,1 without a unit of length; expected a volume of at least "
                 "3e-15, as OpenVDB's grids have it (.nrrd has no such limit)",
                 [&] { write("out.vdb", volume); });
 }
