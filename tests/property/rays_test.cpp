@@ -36,7 +36,10 @@ TEST(Rays, ValuesBeyondFloatsAreWarnedOf) {
     const auto warningsOf = [](Mode mode, double value) {
         Volume volume = makeVolume({{0, 0, 0}, {15, 15, 15}}, [](int, int, int) { return 0; });
         test::changed(volume)->codeBook = CodeBook::ofTable({value});
-        test::changed(volume)->valueMin = test::changed(volume)->valueMax = value;
+        {
+            test::Changed parts(volume);
+            parts->valueMin = parts->valueMax = value;
+        }
         std::string lines;
         Listener listener;
         listener.warning = [&](const std::string& line) { lines += line + "\n"; };
@@ -225,7 +228,10 @@ TEST(Rays, ColoursOfLargestValuesAreTheTransferFunctions) {
 TEST(Rays, ConstantThatIsNoFloatHasItsColour) {
     Volume volume = test::makeVolume({{0, 0, 0}, {7, 7, 7}}, [](int, int, int) { return 0; });
     test::changed(volume)->codeBook = CodeBook::ofTable({0.7});
-    test::changed(volume)->valueMin = test::changed(volume)->valueMax = 0.7;
+    {
+        test::Changed parts(volume);
+        parts->valueMin = parts->valueMax = 0.7;
+    }
     Optics optics;
     optics.transferFunction.linearColors = true;
     optics.transferFunction.colors = {{0.7, {0, 0, 0}}, {0.7, {0.25, 0.5, 1}}};
