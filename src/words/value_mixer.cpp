@@ -35,17 +35,17 @@ ValueMixer::ValueMixer(const Volume& volume, const Subdivision& parts, bool keep
     const auto occurs = [](std::uint64_t count) { return count != 0; };
     const auto& histogram = volume.histogram();
     const auto lowest = std::find_if(histogram.begin(), histogram.end(), occurs);
-    if (lowest != histogram.end()) {
-        const auto highest = std::find_if(histogram.rbegin(), histogram.rend(), occurs).base() - 1;
-        if (isEven(volume.codeBook())) {
-            makeEvenLevels(int(lowest - histogram.begin()), int(highest - histogram.begin()),
-                           levels);
-        } else {
-            makeTableLevels(volume, levels);
-        }
+    if (lowest == histogram.end()) {
+        levels_ = Volume(std::move(levels));
+        return;
+    }
+    const auto highest = std::find_if(histogram.rbegin(), histogram.rend(), occurs).base() - 1;
+    if (isEven(volume.codeBook())) {
+        makeEvenLevels(int(lowest - histogram.begin()), int(highest - histogram.begin()), levels);
+    } else {
+        makeTableLevels(volume, levels);
     }
     levels_ = Volume(std::move(levels));
-    if (lowest == histogram.end()) return;
     for (int code = 0; code < kCodeCount; ++code) {
         if (histogram[code] == 0) continue;
         const int steps = (code - even_.lowest) * even_.perCode;
